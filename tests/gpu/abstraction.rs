@@ -17,6 +17,20 @@ fn hundred(flip: bool) -> DepthMap {
     }
 }
 
+/// Before a white background.
+fn before_white(mut small: Small) -> Small {
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
+    small
+}
+
+/// Draws with a style over the depth from 1 to 101 units.
+fn wear(small: &mut Small, style: ComicStyle) {
+    small.style(&with_map(style, hundred(false)));
+}
+
 /// A card over the left half of the view with a shade of its own, and one over the right half, with
 /// another card in front of each by this fraction of the distance: those are returned.
 fn cards(small: &mut Small, distances: [f32; 2], step: f32) -> [Entity; 2] {
@@ -26,12 +40,8 @@ fn cards(small: &mut Small, distances: [f32; 2], step: f32) -> [Entity; 2] {
         let (side, distance) = ([-1.0, 1.0][card], distances[card]);
         let [_, front] = [(0.6, distance * (1.0 + step)), (0.2, distance)].map(|(height, away)| {
             let at = Transform::from_xyz(side * 0.22 * away, 0.0, -away);
-            let material = StandardMaterial {
-                base_color: Color::srgb(0.9, 0.5, 0.3),
-                unlit: true,
-                ..default()
-            };
-            small.put(Rectangle::new(0.2 * away, height * away), material, at)
+            let shape = Rectangle::new(0.2 * away, height * away);
+            small.put(shape, unlit(Color::srgb(0.9, 0.5, 0.3)), at)
         });
         front
     })
@@ -89,7 +99,7 @@ fn far_things_are_paler_and_have_fewer_tones() {
             ..default()
         };
         let style = ComicStyle::new().with(bands(2)).with(split);
-        small.style(&with_map(style, hundred(false)));
+        wear(&mut small, style);
         let found = seen(&mut small);
         for (card, levels) in [8, 2].into_iter().enumerate() {
             small.style(&ComicStyle::new().with(bands(levels)));
@@ -136,33 +146,45 @@ fn sharp() -> Outlines {
     }
 }
 
-/// A step that is a line near by is none far away, and a large step is one at every distance.
+/// The ink of a near card and a far one with a step of this fraction, without abstraction and with that
+/// of their places, or of levels of their own.
+fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
+    let fronts = cards(small, [1.2, 75.0], step);
+    let style = ComicStyle::new().with(sharp());
+    wear(small, style.clone());
+    let without = ink(small);
+    for (front, level) in fronts.into_iter().zip(levels.into_iter().flatten()) {
+        let own = ObjectAbstraction::fixed(level);
+        small.world().entity_mut(front).insert(own);
+    }
+    let abstraction = Abstraction {
+        line_threshold: 8.0,
+        ..default()
+    };
+    wear(small, style.with(abstraction));
+    [without, ink(small)]
+}
+
+/// A step that is a line near by is none far away, and a large step is one at every distance. The
+/// lines of an object with a level of its own follow that, not its place.
 #[test]
 fn far_edges_must_be_stronger() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
-    let outlines = sharp();
+    let mut small = before_white(Small::new(UVec2::new(96, 64), Msaa::Off));
     // At the threshold of 0.02 the response is 1, and above, the square of the ratio.
-    for (step, stays) in [(0.03, false), (0.3, true)] {
-        cards(&mut small, [1.2, 75.0], step);
-        let style = ComicStyle::new().with(outlines);
-        small.style(&with_map(style.clone(), hundred(false)));
-        let without = ink(&mut small);
-        assert!(without[0] > 15 && without[1] > 15, "{step}: {without:?}");
-        let abstraction = Abstraction {
-            line_threshold: 8.0,
-            ..default()
-        };
-        small.style(&with_map(style.with(abstraction), hundred(false)));
-        let with = ink(&mut small);
-        assert_eq!(with[0], without[0], "{step}: near by");
-        if stays {
-            assert_eq!(with[1], without[1], "{step}: far away");
-        } else {
-            assert!(with[1] < without[1] / 2, "{step}: {with:?} of {without:?}");
+    for (step, levels, kept) in [
+        (0.03, None, [true, false]),
+        (0.3, None, [true, true]),
+        (0.03, Some([1.0, 0.0]), [false, true]),
+    ] {
+        let [without, with] = inks(&mut small, step, levels);
+        for card in 0..2 {
+            let what = format!("{step}, {levels:?}, {card}: {with:?} of {without:?}");
+            assert!(without[card] > 15, "{what}");
+            if kept[card] {
+                assert_eq!(with[card], without[card], "{what}");
+            } else {
+                assert!(with[card] < without[card] / 2, "{what}");
+            }
         }
     }
     assert_eq!(small.errors(), 0);
@@ -190,14 +212,13 @@ fn objects_have_colors_of_their_own_level() {
             small.world().entity_mut(fronts[1]).insert(far);
             seen(small).map(spread)
         };
-        let style = |by| {
-            let style = ComicStyle::new().with(Abstraction {
-                granularity: by,
+        let style = |granularity| {
+            ComicStyle::new().with(Abstraction {
+                granularity,
                 ..abstraction
-            });
-            with_map(style, hundred(false))
+            })
         };
-        small.style(&style(Granularity::Object));
+        wear(&mut small, style(Granularity::Object));
         let fixed = ObjectAbstraction::fixed;
         for reversed in [[fixed(1.0), fixed(0.0)], [offset(1.0), offset(-1.0)]] {
             let found = levels(&mut small, reversed);
@@ -212,10 +233,8 @@ fn objects_have_colors_of_their_own_level() {
         );
         // Inherited from a parent, except for those with their own.
         for front in fronts {
-            small
-                .world()
-                .entity_mut(front)
-                .remove::<ObjectAbstraction>();
+            let mut front = small.world().entity_mut(front);
+            front.remove::<ObjectAbstraction>();
         }
         let parent = (fixed(1.0), Transform::IDENTITY, Visibility::default());
         let parent = small.world().spawn(parent).id();
@@ -224,38 +243,11 @@ fn objects_have_colors_of_their_own_level() {
         let found = seen(&mut small).map(spread);
         assert!(found[0] <= 1 && found[1].abs_diff(plain) <= 1, "{found:?}");
         // Where every pixel is on its own, there are no objects.
-        small.style(&style(Granularity::Pixel));
+        wear(&mut small, style(Granularity::Pixel));
         let found = seen(&mut small).map(spread);
         assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
         assert_eq!(small.errors(), 0);
     }
-}
-
-/// The lines of an object follow its level, not its place.
-#[test]
-fn objects_have_lines_of_their_own_level() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
-    let fronts = cards(&mut small, [1.2, 75.0], 0.03);
-    let style = ComicStyle::new().with(sharp());
-    small.style(&with_map(style.clone(), hundred(false)));
-    let without = ink(&mut small);
-    let abstraction = Abstraction {
-        line_threshold: 8.0,
-        ..default()
-    };
-    small.style(&with_map(style.with(abstraction), hundred(false)));
-    for (card, level) in [1.0, 0.0].into_iter().enumerate() {
-        let own = ObjectAbstraction::fixed(level);
-        small.world().entity_mut(fronts[card]).insert(own);
-    }
-    let with = ink(&mut small);
-    assert_eq!(with[1], without[1], "all detail far away");
-    assert!(with[0] < without[0] / 2, "{with:?} of {without:?}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// One figure has one level: the lines of an object that extends in depth appear at the same step,
@@ -263,17 +255,13 @@ fn objects_have_lines_of_their_own_level() {
 #[test]
 fn lines_of_an_object_follow_its_centre() {
     // With the same ids of objects each time: the thresholds of a whole are equal to a step at some ids only.
-    let mut small = Small::alone(options(UVec2::new(96, 64)), Msaa::Off);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
+    let mut small = before_white(Small::alone(options(UVec2::new(96, 64)), Msaa::Off));
     let abstraction = Abstraction {
         line_threshold: 8.0,
         ..default()
     };
     let style = ComicStyle::new().with(sharp()).with(abstraction);
-    small.style(&with_map(style, hundred(false)));
+    wear(&mut small, style);
     let mut has_line = |step: u32, whole: bool, card: usize| {
         let fronts = cards(&mut small, [30.0, 50.0], 0.002 * step as f32);
         if whole {
@@ -326,11 +314,7 @@ fn tones_split_without_popping() {
     let colors: Vec<_> = [1.0, 0.02, 0.02, 1.0].map(|y: f32| [y, y, y, 1.0]).to_vec();
     let mesh =
         Mesh::from(Rectangle::new(4.0, 2.0)).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors);
-    let material = StandardMaterial {
-        unlit: true,
-        ..default()
-    };
-    let wall = small.put(mesh, material, Transform::IDENTITY);
+    let wall = small.put(mesh, unlit(Color::WHITE), Transform::IDENTITY);
     let bands = ToneBands {
         levels: LEVELS,
         ..default()
@@ -341,17 +325,15 @@ fn tones_split_without_popping() {
         ..default()
     };
     let style = ComicStyle::new().with(bands).with(abstraction);
-    small.style(&with_map(style, hundred(false)));
+    wear(&mut small, style);
     let seen_at = |small: &mut Small, d: f32| {
         let away = 1.0 + 100.0 * d;
         let at = Transform::from_xyz(0.0, 0.0, -away).with_scale(Vec3::splat(away));
         small.world().entity_mut(wall).insert(at);
         small.headless.step(1);
         let picture = small.picture();
-        picture
-            .pixels()
-            .map(|p| lightness(p.0[0]))
-            .collect::<Vec<f32>>()
+        let codes = picture.pixels().map(|p| lightness(p.0[0]));
+        codes.collect::<Vec<f32>>()
     };
     seen_at(&mut small, 1.0);
     small.settle();

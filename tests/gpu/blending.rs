@@ -8,7 +8,7 @@ use bevy_comics::{
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
 
-use crate::{failures::prepasses::still, prelude::*, styles::styles};
+use crate::{failures::prepasses::still, focus::shot, prelude::*, styles::styles};
 
 fn preset(name: &str) -> ComicStyle {
     let mut style = presets::find(name).expect(name).style();
@@ -23,7 +23,7 @@ fn preset(name: &str) -> ComicStyle {
 fn whatever_lies_between_two_styles_is_a_style() {
     let config = ProptestConfig {
         cases: 256,
-        ..ProptestConfig::default()
+        ..default()
     };
     let ways = (styles(), styles(), -0.5f32..1.5);
     TestRunner::new(config)
@@ -46,12 +46,6 @@ fn whatever_lies_between_two_styles_is_a_style() {
         .unwrap_or_else(|error| panic!("{error}"));
 }
 
-fn shoot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
-    small.style(style);
-    small.settle();
-    small.picture()
-}
-
 fn mean_apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let sum: u64 = a
         .pixels()
@@ -68,7 +62,7 @@ fn check_ways(size: UVec2, ways: &[(&str, &str)]) {
     let mut small = Small::new(size, Msaa::Off);
     for (from, to) in ways.iter().copied() {
         let (a, b) = (preset(from), preset(to));
-        let whole = mean_apart(&shoot(&mut small, &a), &shoot(&mut small, &b));
+        let whole = mean_apart(&shot(&mut small, &a), &shot(&mut small, &b));
         assert!(whole > 4.0, "{from} and {to} differ: {whole}");
         let step = 1.0 / 1024.0;
         for (before, after) in [
@@ -76,7 +70,7 @@ fn check_ways(size: UVec2, ways: &[(&str, &str)]) {
             (0.5 - 0.5 * step, 0.5 + 0.5 * step),
             (1.0 - step, 1.0),
         ] {
-            let pictures = [before, after].map(|t| shoot(&mut small, &a.blend(&b, t)));
+            let pictures = [before, after].map(|t| shot(&mut small, &a.blend(&b, t)));
             let apart = mean_apart(&pictures[0], &pictures[1]);
             assert!(
                 apart < 1.0,
@@ -143,6 +137,11 @@ fn three_styles() -> [ComicStyle; 3] {
     ]
 }
 
+fn fading(small: &Small) -> bool {
+    let world = small.headless.app.world();
+    world.get::<StyleTransition>(small.camera).is_some()
+}
+
 #[derive(Resource, Default)]
 struct Arrivals(Vec<Entity>);
 
@@ -155,14 +154,6 @@ fn a_transition_takes_its_time_and_arrives() {
         },
     );
     let arrivals = |small: &Small| small.headless.app.world().resource::<Arrivals>().0.len();
-    let fading = |small: &Small| {
-        small
-            .headless
-            .app
-            .world()
-            .get::<StyleTransition>(small.camera)
-            .is_some()
-    };
     let [a, b, c] = three_styles();
     small.style(&a);
     small.settle();
@@ -173,13 +164,8 @@ fn a_transition_takes_its_time_and_arrives() {
     let half = look(&small);
     assert!(fading(&small) && half != unnamed(&a) && half != unnamed(&b));
     let want = unnamed(&a).blend(&b, 0.5);
-    let width = |style: &ComicStyle| style.get::<Contours>().expect("contours").width;
-    assert!(
-        (width(&half) - width(&want)).abs() < 0.05,
-        "{} {}",
-        width(&half),
-        width(&want)
-    );
+    let [found, want] = [&half, &want].map(|s| s.get::<Contours>().expect("contours").width);
+    assert!((found - want).abs() < 0.05, "{found}, {want}");
 
     // A second transition starts from the current state.
     small.insert(StyleTransition::to(c.clone(), 0.5));
@@ -218,69 +204,41 @@ fn a_transition_takes_its_time_and_arrives() {
 #[test]
 fn a_transition_and_the_cameras_file_agree() {
     let mut small = Small::new(TINY, Msaa::Off);
-    let add = |small: &mut Small, style: ComicStyle| {
-        small
-            .world()
-            .resource_mut::<Assets<ComicStyle>>()
-            .add(style)
-    };
     let [a, b, c] = three_styles();
-    let first = add(&mut small, a);
-    let second = add(&mut small, b.clone());
-    small.insert(Comic(first.clone()));
+    let mut files = small.world().resource_mut::<Assets<ComicStyle>>();
+    let [first, second] = [a, b.clone()].map(|style| files.add(style));
+    small.insert(Comic(first));
     small.settle();
     small.insert(StyleTransition::to_asset(second.clone(), 0.1));
     small.headless.step(12);
     assert_eq!(look(&small), unnamed(&b));
     let handle = small.headless.app.world().get::<Comic>(small.camera);
-    assert_eq!(
-        handle,
-        Some(&Comic(second.clone())),
-        "its file goes on with it"
-    );
+    assert_eq!(handle, Some(&Comic(second.clone())));
 
     // A transition to a style without a file: the old file no longer applies.
     small.insert(StyleTransition::to(c.clone(), 0.0));
     small.headless.step(3);
     assert_eq!(look(&small), unnamed(&c));
-    if let Some(mut style) = small
-        .world()
-        .resource_mut::<Assets<ComicStyle>>()
-        .get_mut(&second)
-    {
-        style.remove::<Desaturation>();
-        style.remove::<Contours>();
-    }
+    let mut files = small.world().resource_mut::<Assets<ComicStyle>>();
+    let mut style = files.get_mut(&second).expect("the second file");
+    style.remove::<Desaturation>();
+    style.remove::<Contours>();
+    drop(style);
     small.headless.step(4);
     assert_eq!(look(&small), unnamed(&c), "a file that it left is not read");
 
     // A file that cannot be read ends the transition at its current state.
-    let missing = small
-        .world()
-        .resource::<AssetServer>()
-        .load("styles/no-such-file.comic.ron");
+    let server = small.world().resource::<AssetServer>();
+    let missing = server.load("styles/no-such-file.comic.ron");
     small.insert(StyleTransition::to_asset(missing, 0.1));
     for _ in 0..200 {
         small.headless.step(1);
         std::thread::sleep(Duration::from_millis(2));
-        if small
-            .headless
-            .app
-            .world()
-            .get::<StyleTransition>(small.camera)
-            .is_none()
-        {
+        if !fading(&small) {
             break;
         }
     }
-    assert!(
-        small
-            .headless
-            .app
-            .world()
-            .get::<StyleTransition>(small.camera)
-            .is_none()
-    );
+    assert!(!fading(&small));
     assert_eq!(look(&small), unnamed(&c));
 }
 
@@ -288,13 +246,11 @@ fn a_transition_and_the_cameras_file_agree() {
 /// never shows the original picture.
 #[test]
 fn a_look_stays_until_the_next_one_is_compiled() {
-    let mut small = Small::with(
-        HeadlessOptions {
-            background_pipelines: true,
-            ..options(size())
-        },
-        Msaa::Off,
-    );
+    let background = HeadlessOptions {
+        background_pipelines: true,
+        ..options(size())
+    };
+    let mut small = Small::with(background, Msaa::Off);
     let until_complete = |small: &mut Small| {
         for _ in 0..2000 {
             small.headless.step(1);

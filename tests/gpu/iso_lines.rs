@@ -25,15 +25,29 @@ fn draw(small: &mut Small, lines: IsoLines) -> image::RgbaImage {
     small.picture()
 }
 
-/// The middle of the ink near a place along a row of pixels, and how much there is.
-fn middle(ink: impl Fn(u32) -> f64, near: f64) -> [f64; 2] {
-    let from = (near - 3.9).floor().max(0.0) as u32;
+/// Checks where the middle of the ink near a place along a row of pixels is, and how much there is of
+/// it. `slack`: of the place and of the width.
+fn assert_line(ink: impl Fn(u32) -> f64, [at, width]: [f64; 2], slack: [f64; 2]) {
+    let from = (at - 3.9).floor().max(0.0) as u32;
     let [mut sum, mut moment] = [0.0; 2];
-    for x in from..=(near + 3.0) as u32 {
+    for x in from..=(at + 3.0) as u32 {
         sum += ink(x);
         moment += ink(x) * (f64::from(x) + 0.5);
     }
-    [moment / sum, sum]
+    let found = moment / sum;
+    assert!((found - at).abs() < slack[0], "at {found}, not {at}");
+    assert!(
+        (sum - width).abs() < slack[1],
+        "at {at}: {sum}, not {width}"
+    );
+}
+
+fn column(picture: &image::RgbaImage, x: u32) -> impl Fn(u32) -> f64 {
+    move |y| 1.0 - linear(picture, x, y)[0]
+}
+
+fn row(picture: &image::RgbaImage, y: u32) -> impl Fn(u32) -> f64 {
+    move |x| 1.0 - linear(picture, x, y)[0]
 }
 
 /// A wall that leans by 60 degrees, seen from the front: heights are rows of pixels.
@@ -44,25 +58,22 @@ fn heights_are_where_they_are() {
     let at = Transform::from_xyz(0.0, 0.0, -300.0)
         .with_rotation(Quat::from_rotation_x(60f32.to_radians()));
     small.world().entity_mut(leaning).insert(at);
-    let picture = draw(&mut small, every_8(IsoField::Height));
-    for line in -3..=3 {
-        let row = 32.0 - 8.0 * f64::from(line);
-        let [found, width] = middle(|y| 1.0 - linear(&picture, 40, y)[0], row);
-        assert!((found - row).abs() < 0.02, "{line}: {found}, {row}");
-        assert!((width - 2.0).abs() < 0.02, "{line}: {width}");
-    }
-    // Every fifth line is heavier.
-    let heavier = IsoLines {
-        major: 3,
-        major_width: 4.0,
-        ..every_8(IsoField::Height)
-    };
-    let picture = draw(&mut small, heavier);
-    for line in -3..=3 {
-        let row = 32.0 - 8.0 * f64::from(line);
-        let [_, width] = middle(|y| 1.0 - linear(&picture, 40, y)[0], row);
-        let want = if line % 3 == 0 { 4.0 } else { 2.0 };
-        assert!((width - want).abs() < 0.02, "{line}: {width}");
+    // Every third line is heavier, or none.
+    for major in [0, 3] {
+        let lines = IsoLines {
+            major,
+            major_width: 4.0,
+            ..every_8(IsoField::Height)
+        };
+        let picture = draw(&mut small, lines);
+        for line in -3..=3 {
+            let at = 32.0 - 8.0 * f64::from(line);
+            let width = match major {
+                3 if line % 3 == 0 => 4.0,
+                _ => 2.0,
+            };
+            assert_line(column(&picture, 40), [at, width], [0.02, 0.02]);
+        }
     }
 }
 
@@ -78,12 +89,9 @@ fn distances_are_rings() {
     let picture = draw(&mut small, lines);
     for ring in 1..=5 {
         for side in [-1.0, 1.0] {
-            let near = 48.0 + side * 8.0 * f64::from(ring);
-            let [found, width] = middle(|x| 1.0 - linear(&picture, x, 32)[0], near);
             // The row of pixels is half a pixel away from the middle of the rings.
-            let want = 48.0 + side * ((8.0 * f64::from(ring)).powi(2) - 0.25).sqrt();
-            assert!((found - want).abs() < 0.05, "{ring}: {found}, {want}");
-            assert!((width - 2.0).abs() < 0.1, "{ring}: {width}");
+            let at = 48.0 + side * ((8.0 * f64::from(ring)).powi(2) - 0.25).sqrt();
+            assert_line(row(&picture, 32), [at, 2.0], [0.05, 0.1]);
         }
     }
 }
@@ -103,10 +111,8 @@ fn depths_divide_the_range() {
     };
     let picture = draw(&mut small, lines);
     for line in 1..=9 {
-        let near = 0.5 + 95.0 * f64::from(line) / 10.0;
-        let [found, width] = middle(|x| 1.0 - linear(&picture, x, 20)[0], near);
-        assert!((found - near).abs() < 0.02, "{line}: {found}, {near}");
-        assert!((width - 2.0).abs() < 0.02, "{line}: {width}");
+        let at = 0.5 + 95.0 * f64::from(line) / 10.0;
+        assert_line(row(&picture, 20), [at, 2.0], [0.02, 0.02]);
     }
 }
 
@@ -129,12 +135,10 @@ fn heights_are_right_in_perspective() {
     let tangent = f64::from(std::f32::consts::FRAC_PI_8).tan();
     for y in [0.0, 20.0, 40.0] {
         let z = 2.0 * (y + 30.0);
-        let row = 32.0 - 32.0 * (y - 20.0) / (z * tangent);
-        let [found, width] = middle(|y| 1.0 - linear(&picture, 48, y)[0], row);
+        let at = 32.0 - 32.0 * (y - 20.0) / (z * tangent);
         // The height changes less and less from row to row: the distance to the line, from
         // the change at a pixel, is off by a few hundredths.
-        assert!((found - row).abs() < 0.1, "{y}: {found}, {row}");
-        assert!((width - 2.0).abs() < 0.1, "{y}: {width}");
+        assert_line(column(&picture, 48), [at, 2.0], [0.1, 0.1]);
     }
 }
 
@@ -147,11 +151,7 @@ fn what_does_not_change_has_no_lines() {
         .insert(Transform::from_xyz(0.0, 5.0, 0.0).looking_to(Vec3::new(0.0, -0.4, -1.0), Vec3::Y));
     let floor = Plane3d::default().mesh().size(800.0, 800.0).build();
     small.put(floor, unlit(Color::WHITE), Transform::IDENTITY);
-    let plain = {
-        small.style(&ComicStyle::new());
-        small.settle();
-        small.picture()
-    };
+    let plain = small.settle().picture();
     for field in [IsoField::Height, IsoField::Depth] {
         // No line but that of height 0 is in the picture.
         let lines = IsoLines {

@@ -1,24 +1,16 @@
 //! Paint in the picture of a camera.
 
-use bevy_comics_testkit::reference::{
-    Rgba,
-    box_statistics::Sheet,
-    color,
-    fused::{Input, stylize},
-    paint::Scene,
-    view::{View, pixel_depth},
-};
-use half::f16;
+use bevy_comics_testkit::reference::{paint::Scene, view::pixel_depth};
 
 use crate::{
+    focus::{see_in, shot},
     halftone::covered,
-    pictures::view_of,
+    pictures::assert_later_pass_matches_the_reference,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
 
 const FORMS: [PaintKernel; 2] = [PaintKernel::Box, PaintKernel::Anisotropic];
-const CODE: f64 = 1.0 / 255.0;
 
 fn paint(form: PaintKernel) -> Paint {
     Paint {
@@ -27,74 +19,29 @@ fn paint(form: PaintKernel) -> Paint {
     }
 }
 
-/// The picture of a style without paint, as the pass before it stores it: in 11 bits.
-fn sheet(view: &View, input: &Input, style: &ComicStyle) -> Sheet {
-    let [left, top, width, height] = view.viewport;
-    Sheet::new([width, height].map(|v| v as usize), |[x, y]| {
-        let at = [left + x as u32, top + y as u32];
-        let pixel: Rgba = stylize(style, view, input, at[0], at[1], 0.0);
-        pixel.map(|v| f64::from(f16::from_f64(v).to_f32()))
-    })
-}
-
-/// Compares every pixel with the reference, which starts from what the pass read. `before`: the
-/// other effects of the camera.
+/// Compares every pixel with the reference. `before`: the other effects of the camera.
 fn assert_matches_the_reference(
     small: &mut Small,
     before: &ComicStyle,
     s: Paint,
     viewport: Option<[u32; 4]>,
 ) {
-    small.insert(VisibleDepthRange::default());
-    small.style(&before.clone().with(s));
-    small.settle();
-    assert!(small.ran(ComicsStage::of::<Paint>()), "{s:?}");
-    let (read, wrote) = small.pass();
-    let loaded = small.loaded();
-    let map = before.depth_map.unwrap_or_default();
-    let prepass = small.prepass().expect("depth");
-    let viewport = viewport.unwrap_or([0, 0, read.width, read.height]);
-    let view = view_of(small, &prepass, &map, viewport);
-    let light = |x: u32, y: u32| loaded.pixels[(y * read.width + x) as usize];
-    let input = Input {
-        picture: &light,
-        size: [read.width, read.height],
-        lines: None,
-        drawing: 0,
-        quads: [viewport[0], viewport[1]],
-    };
-    let sheet = sheet(&view, &input, before);
-    let [left, top] = [viewport[0], viewport[1]];
-    let at = |[x, y]: [usize; 2]| [left + x as u32, top + y as u32];
-    let scene = Scene {
-        sheet: &sheet,
-        depth: &|p| pixel_depth(&view, at(p)[0], at(p)[1])[0],
-        id: &|p| {
-            let index = (at(p)[1] * read.width + at(p)[0]) as usize;
+    assert_later_pass_matches_the_reference(small, before, s, viewport, |view, sheet, _| {
+        let [left, top, ..] = view.viewport;
+        let at = |[x, y]: [usize; 2]| [left + x as u32, top + y as u32];
+        let id = |p: [usize; 2]| {
+            let [x, y] = at(p);
+            let index = (y * view.width + x) as usize;
             view.ids.map_or(0, |ids| ids.pixels[index][0])
-        },
-        scale: 1.0,
-    };
-    let want = scene.painted(&s);
-    let encode = |[r, g, b, alpha]: Rgba| {
-        let [r, g, b] = color::srgb_encode([r, g, b]);
-        [r, g, b, alpha]
-    };
-    let mut changed = 0;
-    for y in 0..sheet.size[1] {
-        for x in 0..sheet.size[0] {
-            let [column, row] = at([x, y]);
-            let got = wrote.pixels[(row * read.width + column) as usize].map(f64::from);
-            let (got, want) = (encode(got), encode(want.at([x, y])));
-            for i in 0..4 {
-                // Half a code of rounding in the target on top of the one allowed.
-                let apart = (got[i].min(1.0) - want[i].min(1.0)).abs();
-                assert!(apart <= 1.5 * CODE, "{s:?}: ({x}, {y}): {got:?}, {want:?}");
-            }
-            changed += usize::from(want != encode(sheet.at([x, y])));
-        }
-    }
-    assert!(changed > 100, "{changed} pixels are painted");
+        };
+        let scene = Scene {
+            sheet,
+            depth: &|p| pixel_depth(view, at(p)[0], at(p)[1])[0],
+            id: &id,
+            scale: 1.0,
+        };
+        scene.painted(&s)
+    });
 }
 
 #[test]
@@ -122,13 +69,7 @@ fn every_pixel_matches_the_reference() {
 fn a_viewport_is_a_picture_of_its_own() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     let viewport = [11, 5, 43, 30];
-    let entity = small.camera;
-    let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(viewport[0], viewport[1]),
-        physical_size: UVec2::new(viewport[2], viewport[3]),
-        ..default()
-    });
+    see_in(&mut small, viewport);
     let colors = ComicStyle::new().with(Desaturation::default());
     for form in FORMS {
         assert_matches_the_reference(&mut small, &colors, paint(form), Some(viewport));
@@ -161,12 +102,6 @@ fn a_transparent_background_stays() {
         assert!(empty > 300, "{empty} pixels show the background");
     }
     assert_eq!(small.errors(), 0);
-}
-
-fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
-    small.style(style);
-    small.settle();
-    small.picture()
 }
 
 /// A code of rounding: the picture between the passes has 11 bits.
@@ -208,10 +143,8 @@ fn an_edge_stays_sharp() {
     for (a, b) in plain.as_raw().iter().zip(painted.as_raw()) {
         assert!(a.abs_diff(*b) <= 1, "a vertical edge between two pixels");
     }
-    let painted = shot(
-        &mut small,
-        &ComicStyle::new().with(paint(PaintKernel::Anisotropic)),
-    );
+    let style = ComicStyle::new().with(paint(PaintKernel::Anisotropic));
+    let painted = shot(&mut small, &style);
     for y in 0..40 {
         let ink = |picture: &image::RgbaImage| -> f64 {
             (12..36).map(|x| linear(picture, x, y)[1]).sum()

@@ -10,18 +10,18 @@ use crate::{
 };
 
 /// A wall of one colour that fills the picture.
-fn flat(size: UVec2, color: Color) -> Small {
+fn flat(size: UVec2, light: f32) -> Small {
     let mut small = towards_the_sky(size);
     wall(&mut small, [-600.0, -600.0], [600.0, 600.0], 100.0);
-    paint(&mut small, color);
+    paint(&mut small, light);
     small
 }
 
-/// Gives the wall another colour.
-fn paint(small: &mut Small, color: Color) {
+/// Gives the wall another grey.
+fn paint(small: &mut Small, light: f32) {
     let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
     for (_, material) in materials.iter_mut() {
-        *material = unlit(color);
+        *material = unlit(Color::linear_rgb(light, light, light));
     }
 }
 
@@ -73,7 +73,7 @@ fn every_pixel_matches_the_reference() {
 #[test]
 fn the_mean_tone_stays() {
     let page = UVec2::new(256, 192);
-    let mut small = flat(page, Color::WHITE);
+    let mut small = flat(page, 1.0);
     small.insert(Hdr);
     for grain in [Paper::default().grain, 1.0] {
         let settings = Paper {
@@ -83,19 +83,15 @@ fn the_mean_tone_stays() {
         };
         for tone in 0..=10u8 {
             let light = f32::from(tone) / 10.0;
-            paint(&mut small, Color::linear_rgb(light, light, light));
+            paint(&mut small, light);
             small.insert(settings).settle();
             let (before, after) = small.pass();
             let count = after.pixels.len() as f64;
             let mean = |p: &[[f32; 4]]| p.iter().map(|p| f64::from(p[0])).sum::<f64>() / count;
             let (was, is) = (mean(&before.pixels), mean(&after.pixels));
             assert!((is - was).abs() < 0.01, "{grain}, {light}: {was}, {is}");
-            let spread = after
-                .pixels
-                .iter()
-                .map(|p| (f64::from(p[0]) - is).powi(2))
-                .sum::<f64>()
-                / count;
+            let square = |p: &[f32; 4]| (f64::from(p[0]) - is).powi(2);
+            let spread = after.pixels.iter().map(square).sum::<f64>() / count;
             // Heights deviate by about 0.4; shading adds to it.
             let least = f64::from(grain * light * (1.0 - light)) * 0.3;
             assert!(spread.sqrt() >= least, "{grain}, {light}: {spread}");
@@ -109,19 +105,15 @@ fn the_mean_tone_stays() {
     small.camera_mut().remove::<Hdr>();
     small.insert(white).settle();
     let picture = small.picture();
-    let sum: f64 = picture
-        .enumerate_pixels()
-        .map(|(x, y, _)| linear(&picture, x, y)[1])
-        .sum();
-    let mean = sum / f64::from(page.x * page.y);
+    let lost = black_ink(&picture, picture.enumerate_pixels().map(|(x, y, _)| (x, y)));
+    let mean = 1.0 - lost / f64::from(page.x * page.y);
     assert!((mean - 1.0).abs() < 0.01, "{mean}");
 }
 
 /// Both halves of a split screen are on one sheet, which is that of the whole screen.
 #[test]
 fn a_split_screen_is_one_sheet() {
-    let grey = Color::linear_rgb(0.4, 0.4, 0.4);
-    let mut small = flat(size(), grey);
+    let mut small = flat(size(), 0.4);
     small.insert(Paper::default()).settle();
     let whole = small.picture();
     let half = UVec2::new(size().x / 2, size().y);
@@ -201,7 +193,7 @@ fn a_view_can_have_its_own_sheet() {
 /// The sheet stays for all time, or for one drawing.
 #[test]
 fn sheets_change_at_their_rate() {
-    let mut small = flat(UVec2::new(48, 32), Color::linear_rgb(0.4, 0.4, 0.4));
+    let mut small = flat(UVec2::new(48, 32), 0.4);
     // A new one in every fifth frame.
     for (rate, sheets) in [(0.0, 1), (12.0, 7)] {
         small.insert(Paper { rate, ..default() }).settle();
@@ -215,23 +207,38 @@ fn sheets_change_at_their_rate() {
     }
 }
 
-/// Black, white, and values out of range: nothing that is no number, no ink on nothing.
+/// Settings out of range, of paper and of speed lines, draw what the nearest end of their range
+/// draws, and nothing that is no number.
 #[test]
 fn extreme_values_are_finite() {
-    let mut small = Small::new(size(), Msaa::Off);
+    let mut small = flat(UVec2::new(96, 64), 1.0);
     small.insert(Hdr);
     for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
-        small
-            .insert(Paper {
-                grain: x,
-                shading: x,
-                size: x,
+        let paper = Paper {
+            grain: x,
+            shading: x,
+            size: x,
+            rate: x,
+            ..default()
+        };
+        for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
+            let lines = SpeedLines {
+                kind,
+                center: Vec2::splat(x),
+                angle: x,
+                count: u32::MAX,
+                inner: x,
+                width: x,
+                dry_brush: x,
                 rate: x,
+                seed: u32::MAX,
                 ..default()
-            })
-            .settle();
-        let (_, after) = small.pass();
-        assert!(after.pixels.iter().flatten().all(|v| v.is_finite()), "{x}");
+            };
+            small.insert((paper, lines)).settle();
+            let (_, after) = small.pass();
+            let is_finite = after.pixels.iter().flatten().all(|v| v.is_finite());
+            assert!(is_finite, "{x}, {kind:?}");
+        }
     }
     assert_eq!(small.errors(), 0);
 }

@@ -4,6 +4,7 @@ use bevy_comics::effect::EffectTarget;
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use crate::{
+    focus::see_in,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -47,11 +48,11 @@ fn still(kind: SpeedLineKind) -> SpeedLines {
     }
 }
 
-fn drawing(settings: SpeedLines, size: UVec2, scale: f32, centre: [f64; 2]) -> Drawing {
+fn drawing(settings: SpeedLines, size: UVec2, centre: [f64; 2]) -> Drawing {
     Drawing {
         settings,
         size: [size.x, size.y].map(f64::from),
-        scale: f64::from(scale),
+        scale: 1.0,
         centre,
         number: 0,
     }
@@ -76,7 +77,10 @@ fn every_pixel_matches_the_reference() {
             small.insert(still(kind)).settle();
             assert!(small.ran(ComicsStage::of::<SpeedLines>()));
             let picture = small.picture();
-            let want = drawing(still(kind), SIZE, scale, [96.0, 64.0]);
+            let want = Drawing {
+                scale: f64::from(scale),
+                ..drawing(still(kind), SIZE, [96.0, 64.0])
+            };
             assert!(apart(&picture, &want) < CODE, "{kind:?}, {scale}, {hdr}");
             assert!(
                 ink(&picture).iter().sum::<f64>() > 50.0,
@@ -87,23 +91,58 @@ fn every_pixel_matches_the_reference() {
     }
 }
 
+/// Few and many, narrow and wide, dry and wet lines, from places in the picture and beside it.
+#[test]
+fn lines_of_every_kind_match_the_reference() {
+    let mut small = page();
+    for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
+        let dry = SpeedLines {
+            count: 20,
+            width: 40.0,
+            inner: 0.0,
+            angle: 37.0,
+            center: Vec2::new(0.1, 0.5),
+            dry_brush: 0.4,
+            ..still(kind)
+        };
+        let wide = SpeedLines {
+            count: 400,
+            inner: 0.9,
+            angle: -90.0,
+            center: Vec2::new(1.6, 0.5),
+            dry_brush: 0.0,
+            ..dry
+        };
+        let narrow = SpeedLines {
+            width: 1.0,
+            inner: 0.2,
+            angle: 180.0,
+            center: Vec2::new(-1.0, 0.5),
+            ..wide
+        };
+        for lines in [dry, wide, narrow] {
+            small.insert(lines).settle();
+            let centre = (lines.center * SIZE.as_vec2()).to_array().map(f64::from);
+            let apart = apart(&small.picture(), &drawing(lines, SIZE, centre));
+            // Places are rounded to 1e-4 pixels, a few times over. Streaks of a dry brush are five
+            // times as steep as the edges of lines.
+            let streaks = if lines.dry_brush > 0.0 { 1e-2 } else { 0.0 };
+            assert!(apart < CODE + streaks, "{lines:?}: {apart}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
 /// In the right half of a split screen the lines are those of a screen of that size.
 #[test]
 fn a_viewport_is_a_picture_of_its_own() {
     let mut small = page();
     let half = UVec2::new(SIZE.x / 2, SIZE.y);
-    small.insert(Camera {
-        viewport: Some(Viewport {
-            physical_position: UVec2::new(SIZE.x / 2, 0),
-            physical_size: half,
-            ..default()
-        }),
-        ..default()
-    });
+    see_in(&mut small, [half.x, 0, half.x, half.y]);
     small.insert(still(SpeedLineKind::Radial)).settle();
     let picture = small.picture();
     let right = image::imageops::crop_imm(&picture, half.x, 0, half.x, half.y).to_image();
-    let want = drawing(still(SpeedLineKind::Radial), half, 1.0, [48.0, 64.0]);
+    let want = drawing(still(SpeedLineKind::Radial), half, [48.0, 64.0]);
     assert!(apart(&right, &want) < CODE);
 }
 
@@ -151,7 +190,7 @@ fn lines_follow_an_object() {
     };
     small.insert(lines).settle();
     let own = [48.0, 96.0];
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, 1.0, own)) < CODE);
+    assert!(apart(&small.picture(), &drawing(lines, SIZE, own)) < CODE);
     // One unit per pixel, the origin in the middle.
     let hero = small.put(
         Sphere::new(0.1),
@@ -164,16 +203,16 @@ fn lines_follow_an_object() {
     };
     small.insert(target).settle();
     let there = [96.0 + 32.0, 64.0 - 20.0];
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, 1.0, there)) < CODE);
+    assert!(apart(&small.picture(), &drawing(lines, SIZE, there)) < CODE);
     // Behind a perspective camera.
     small.insert(Projection::default());
     let behind = Transform::from_xyz(3.0, 2.0, 50.0);
     small.world().entity_mut(hero).insert(behind);
     small.settle();
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, 1.0, own)) < CODE);
+    assert!(apart(&small.picture(), &drawing(lines, SIZE, own)) < CODE);
     small.world().despawn(hero);
     small.settle();
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, 1.0, own)) < CODE);
+    assert!(apart(&small.picture(), &drawing(lines, SIZE, own)) < CODE);
     assert_eq!(small.errors(), 0);
 }
 
@@ -191,7 +230,7 @@ fn ink_is_opaque_on_nothing() {
         ..still(SpeedLineKind::Radial)
     };
     small.insert(lines).settle();
-    let want = drawing(lines, SIZE, 1.0, [96.0, 64.0]);
+    let want = drawing(lines, SIZE, [96.0, 64.0]);
     for (x, y, pixel) in small.picture().enumerate_pixels() {
         let coverage = want.coverage([x, y].map(|v| f64::from(v) + 0.5));
         let alpha = f64::from(pixel.0[3]) / 255.0;
@@ -200,37 +239,6 @@ fn ink_is_opaque_on_nothing() {
             "{x}, {y}: {alpha}, {coverage}"
         );
     }
-}
-
-/// Numbers out of range draw what the nearest end of their range draws, and nothing that is
-/// no number.
-#[test]
-fn extreme_values_are_finite() {
-    let mut small = page();
-    small.insert(Hdr);
-    for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
-        for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
-            let lines = SpeedLines {
-                kind,
-                center: Vec2::splat(x),
-                angle: x,
-                count: u32::MAX,
-                inner: x,
-                width: x,
-                dry_brush: x,
-                rate: x,
-                seed: u32::MAX,
-                ..default()
-            };
-            small.insert(lines).settle();
-            let (_, after) = small.pass();
-            assert!(
-                after.pixels.iter().flatten().all(|v| v.is_finite()),
-                "{x}, {kind:?}"
-            );
-        }
-    }
-    assert_eq!(small.errors(), 0);
 }
 
 /// More ink the wider the lines are asked, and none with an opacity of 0.
@@ -242,13 +250,11 @@ fn ink_follows_the_width() {
         small.insert(lines).settle();
         black_ink(&small.picture(), all.clone())
     };
-    let narrow = ink(SpeedLines {
-        width: 2.0,
-        ..still(SpeedLineKind::Radial)
-    });
-    let wide = ink(SpeedLines {
-        width: 4.0,
-        ..still(SpeedLineKind::Radial)
+    let [narrow, wide] = [2.0, 4.0].map(|width| {
+        ink(SpeedLines {
+            width,
+            ..still(SpeedLineKind::Radial)
+        })
     });
     assert!((wide / narrow - 2.0).abs() < 0.05, "{narrow}, {wide}");
     // A dry brush leaves out more and more.

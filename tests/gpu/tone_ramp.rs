@@ -2,7 +2,13 @@
 
 use bevy_comics_testkit::{reference::tone_ramp, studio::wear};
 
-use crate::{pictures::assert_pass_matches_the_reference, prelude::*, ramp::room};
+use crate::{pictures::check, prelude::*, ramp::room};
+
+fn grey_wall(small: &mut Small, light: f32) -> Entity {
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
+    let material = unlit(Color::linear_rgb(light, light, light));
+    small.put(wall, material, Transform::IDENTITY)
+}
 
 /// Unlit walls at several distances have the tones that the map says.
 #[test]
@@ -20,13 +26,7 @@ fn tones_change_with_the_distance() {
     small.style(&ComicStyle::new().with(ramp));
     small.insert(map);
     let gray = 0.2;
-    let material = StandardMaterial {
-        base_color: Color::linear_rgb(gray, gray, gray),
-        unlit: true,
-        ..default()
-    };
-    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-    let wall = small.put(wall, material, Transform::IDENTITY);
+    let wall = grey_wall(&mut small, gray);
     let mut all = vec![];
     for z in [1.0f32, 3.0, 5.0, 7.0, 9.0] {
         let at = Transform::from_xyz(0.0, 0.0, -z);
@@ -68,30 +68,26 @@ fn pictures_in_tones_match_the_reference() {
     };
     let style = |ramp: ToneRamp| ComicStyle::new().with(ramp);
     let default = style(ToneRamp::default());
+    let bands = default.clone().with(ToneBands::default());
     let cases = [
         ("tones", default.clone()),
         ("hard tones", style(hard)),
         ("some of the tones", style(partial)),
-        ("tones, turned round", with_map(default.clone(), flipped)),
+        ("tones, turned round", with_map(default, flipped)),
         (
             "tones, then bands and greys",
-            default
-                .with(ToneBands::default())
-                .with(Desaturation::default()),
+            bands.with(Desaturation::default()),
         ),
     ];
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
-        for (name, style) in &cases {
-            assert_pass_matches_the_reference(
-                &mut small,
-                style,
-                None,
-                &format!("{name}, {msaa:?}"),
-            );
-        }
+        let cases = cases.clone().into_iter();
+        check(
+            &mut small,
+            None,
+            cases.map(|(name, style)| (format!("{name}, {msaa:?}"), style)),
+        );
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The spread of a flat wall whose lightness is where a tone begins, in codes.
@@ -107,13 +103,7 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     // After this tonemapping, the square of the place.
     let at = ramp.middle_at * ramp.middle_at;
     let gray = at / (1.0 - at);
-    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-    let material = StandardMaterial {
-        base_color: Color::linear_rgb(gray, gray, gray),
-        unlit: true,
-        ..default()
-    };
-    small.put(wall, material, Transform::IDENTITY);
+    grey_wall(small, gray);
     small.headless.step(6);
     let picture = small.picture();
     assert_eq!(small.errors(), 0);

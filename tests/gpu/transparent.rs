@@ -1,9 +1,7 @@
 //! The opacity of the picture, over a background that shows through.
 
-use bevy_comics::presets::{self, Preset};
-
 use crate::{
-    pictures::{assert_pass_matches_the_reference, known_forms, outlined},
+    pictures::{check_presets, outlined},
     prelude::*,
 };
 
@@ -53,7 +51,7 @@ fn ink_over_an_empty_background_is_as_opaque_as_its_coverage() {
     let mut small = small();
     for msaa in [Msaa::Off, Msaa::Sample4] {
         again(&mut small, msaa);
-        for style in [outlined(outlines), ComicStyle::default().with(contours)] {
+        for style in [outlined(outlines), outlined(contours)] {
             let (mut whole, mut empty) = (0, 0);
             for (read, wrote) in pass(&mut small, &style) {
                 if read != [0.0; 4] {
@@ -111,11 +109,19 @@ fn an_empty_background_stays_empty() {
             ..default()
         })
         .with(Vignette { color, ..default() });
+    let light = TwoTone {
+        threshold: 0.0,
+        ..default()
+    };
     let mut small = small();
-    for msaa in [Msaa::Off, Msaa::Sample4] {
+    for (msaa, style) in [
+        (Msaa::Off, &style),
+        (Msaa::Sample4, &style),
+        (Msaa::Off, &ComicStyle::new().with(light)),
+    ] {
         again(&mut small, msaa);
         let (mut empty, mut changed) = (0, 0);
-        for (read, wrote) in pass(&mut small, &style) {
+        for (read, wrote) in pass(&mut small, style) {
             assert_eq!(read[3], wrote[3]);
             if read == [0.0; 4] {
                 assert_eq!(wrote, [0.0; 4]);
@@ -151,26 +157,15 @@ fn weight_and_split_mix_the_opacity_too() {
 /// Presets that print, and that draw on paper.
 #[test]
 fn presets_match_the_reference_without_a_background() {
-    let presets = [presets::POP_POSTER, presets::PENCIL_SKETCH];
-    assert_presets_match_the_reference(&[Msaa::Off], &presets);
+    check_presets(&mut small(), &[presets::POP_POSTER, presets::PENCIL_SKETCH]);
 }
 
 #[test]
 #[ignore = "long: every preset"]
 fn every_preset_matches_the_reference_without_a_background() {
-    assert_presets_match_the_reference(&[Msaa::Off, Msaa::Sample4], presets::ALL);
-}
-
-fn assert_presets_match_the_reference(msaas: &[Msaa], presets: &[Preset]) {
-    let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
-    for &msaa in msaas {
+    let mut small = small();
+    for msaa in [Msaa::Off, Msaa::Sample4] {
         again(&mut small, msaa);
-        for preset in presets {
-            let what = format!("{preset} without a background, {msaa:?}");
-            for style in known_forms(preset) {
-                assert_pass_matches_the_reference(&mut small, &style, None, &what);
-            }
-        }
-        assert_eq!(small.errors(), 0);
+        check_presets(&mut small, presets::ALL);
     }
 }

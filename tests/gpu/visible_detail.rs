@@ -16,8 +16,7 @@ fn light(axis: DetailAxis) -> ToonLight {
     two_tones(axis, RampMode::LightFraction)
 }
 
-/// A wall in the left, middle or right third of a view of 96 by 32 pixels (-1, 0, 1).
-fn wall(small: &mut Small, third: f32, z: f32, spread: f32, alpha_mode: AlphaMode) -> Entity {
+fn material(small: &mut Small, alpha_mode: AlphaMode) -> MeshMaterial3d<ToonMaterial> {
     let extension = light(DetailAxis::VisibleRange);
     let base = StandardMaterial {
         perceptual_roughness: 1.0,
@@ -25,9 +24,27 @@ fn wall(small: &mut Small, third: f32, z: f32, spread: f32, alpha_mode: AlphaMod
         ..default()
     };
     let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
-    let material = MeshMaterial3d(materials.add(ToonMaterial { base, extension }));
+    MeshMaterial3d(materials.add(ToonMaterial { base, extension }))
+}
+
+/// Where a wall is: in the left, middle or right third of the view (-1, 0, 1), and how far away.
+type Place = (f32, f32);
+
+/// A wall that fills most of a third of a view that is `spread` wide there.
+fn wall(small: &mut Small, (third, z): Place, spread: f32, alpha_mode: AlphaMode) -> Entity {
+    let material = material(small, alpha_mode);
     let at = Transform::from_xyz(third * spread, 0.0, -z).with_scale(Vec3::splat(spread));
     small.put_shared(Rectangle::new(0.9, 0.9), material, at)
+}
+
+/// Opaque walls in perspective.
+fn walls<const N: usize>(small: &mut Small, places: [Place; N]) -> [Entity; N] {
+    places.map(|place| wall(small, place, spread(place.1), AlphaMode::Opaque))
+}
+
+/// The width of a third of a perspective view at a distance.
+fn spread(z: f32) -> f32 {
+    2.0 * std::f32::consts::FRAC_PI_8.tan() * z
 }
 
 /// An empty room with a camera in its origin that looks along -Z.
@@ -97,18 +114,17 @@ fn assert_detail_spans(scales: &[f32], distances: &[f32]) {
     for &scale in scales {
         for (name, projection) in projections(scale) {
             small.insert(projection);
-            // Width of a third of the view at a distance.
             let spread = |z: f32| match name {
                 "orthographic" => scale,
-                _ => 2.0 * (std::f32::consts::FRAC_PI_8).tan() * z * scale,
+                _ => spread(z * scale),
             };
-            let at = |z: f32| z * scale;
-            let opaque = AlphaMode::Opaque;
-            let ends = [(-1.0, near), (1.0, far)]
-                .map(|(third, z)| wall(&mut small, third, at(z), spread(z), opaque));
+            let put = |small: &mut Small, third: f32, z: f32| {
+                wall(small, (third, z * scale), spread(z), AlphaMode::Opaque)
+            };
+            let ends = [(-1.0, near), (1.0, far)].map(|(third, z)| put(&mut small, third, z));
             let mut last = f64::INFINITY;
             for &z in distances {
-                let middle = wall(&mut small, 0.0, at(z), spread(z), opaque);
+                let middle = put(&mut small, 0.0, z);
                 let picture = drawn(&mut small);
                 let detail = wanted(z, near, far);
                 let wrong = off(&picture, 48, 16, detail);
@@ -141,10 +157,7 @@ fn ends_are_exact(picture: &RgbaImage, name: &str) {
 #[test]
 fn both_ends_are_the_ramps_themselves() {
     let mut small = hall(projections(1.0)[0].1.clone());
-    let spread = |z: f32| 2.0 * (std::f32::consts::FRAC_PI_8).tan() * z;
-    for (third, z) in [(-1.0, 2.0), (0.0, 9.0), (1.0, 50.0)] {
-        wall(&mut small, third, z, spread(z), AlphaMode::Opaque);
-    }
+    walls(&mut small, [(-1.0, 2.0), (0.0, 9.0), (1.0, 50.0)]);
     let found = drawn(&mut small);
     for (third, detail) in [(-1.0, 1.0), (1.0, 0.0)] {
         set_light(&mut small, &light(DetailAxis::Constant(detail)));
@@ -158,11 +171,7 @@ fn both_ends_are_the_ramps_themselves() {
 #[test]
 fn a_locked_range_is_kept() {
     let mut small = hall(projections(1.0)[0].1.clone());
-    let spread = |z: f32| 2.0 * (std::f32::consts::FRAC_PI_8).tan() * z;
-    for (third, z) in [(-1.0, 2.0), (0.0, 8.0)] {
-        wall(&mut small, third, z, spread(z), AlphaMode::Opaque);
-    }
-    let far = wall(&mut small, 1.0, 32.0, spread(32.0), AlphaMode::Opaque);
+    let [_, _, far] = walls(&mut small, [(-1.0, 2.0), (0.0, 8.0), (1.0, 32.0)]);
     small.insert(DepthMap {
         locked: true,
         ..default()
@@ -174,7 +183,7 @@ fn a_locked_range_is_kept() {
     };
     detail(&mut small, 0.5);
     small.world().despawn(far);
-    wall(&mut small, 1.0, 512.0, spread(512.0), AlphaMode::Opaque);
+    walls(&mut small, [(1.0, 512.0)]);
     detail(&mut small, 0.5);
     small.insert(DepthMap {
         smoothing: None,
@@ -186,11 +195,10 @@ fn a_locked_range_is_kept() {
 /// There is all detail without a component that asks for depth, and where nothing has written depth.
 #[test]
 fn without_a_range_there_is_all_detail() {
-    let spread = |z: f32| 2.0 * (std::f32::consts::FRAC_PI_8).tan() * z;
     let mut small = hall(projections(1.0)[0].1.clone());
     for alpha_mode in [AlphaMode::Blend, AlphaMode::Opaque] {
         let walls = [(-1.0, 2.0), (0.0, 9.0), (1.0, 50.0)]
-            .map(|(third, z)| wall(&mut small, third, z, spread(z), alpha_mode));
+            .map(|place| wall(&mut small, place, spread(place.1), alpha_mode));
         if alpha_mode == AlphaMode::Opaque {
             let styled = drawn(&mut small);
             assert!(off(&styled, x_of(1.0), 16, 0.0) < 1.0);
@@ -248,13 +256,7 @@ fn every_view_has_its_own_range() {
         let at = Transform::from_xyz(x, 0.0, z)
             .with_scale(Vec3::splat(z.abs()))
             .with_rotation(Quat::from_rotation_y(far * std::f32::consts::PI));
-        let base = StandardMaterial {
-            perceptual_roughness: 1.0,
-            ..default()
-        };
-        let extension = light(DetailAxis::VisibleRange);
-        let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
-        let material = MeshMaterial3d(materials.add(ToonMaterial { base, extension }));
+        let material = material(&mut small, AlphaMode::Opaque);
         small.put_shared(Rectangle::new(0.5, 0.8), material, at);
     }
     let picture = drawn(&mut small);

@@ -1,6 +1,6 @@
-//! Reference of `effects/abstraction/abstraction.wgsl` and `lines/modifiers/abstraction.wgsl`.
+//! Reference of `lines/abstraction.wgsl`, and of bands that split in `effect/color.wgsl`.
 
-use super::{Rgb, color::luminance, mix, smoothstep, tone_bands::band_tone};
+use super::{mix, smoothstep, tone_bands::band_tone};
 
 /// What is `near` at D = 0 and `far` at D = 1.
 pub fn graded([near, far]: [f64; 2], exponent: f64, d: f64) -> f64 {
@@ -10,12 +10,6 @@ pub fn graded([near, far]: [f64; 2], exponent: f64, d: f64) -> f64 {
 /// The abstraction of an object by distance, with a dial of its own: a factor and what is added.
 pub fn dialled(by_distance: f64, [factor, added]: [f64; 2]) -> f64 {
     (factor * by_distance + added).clamp(0.0, 1.0)
-}
-
-/// The colour at an abstraction `a`. `saturation`: its factor at full abstraction.
-pub fn color(linear: Rgb, saturation: f64, a: f64) -> Rgb {
-    let grey = luminance(linear);
-    linear.map(|c| mix(c, grey, a * (1.0 - saturation)))
 }
 
 /// Bands that have split `splits` times. `step`: the width of a step in lightness.

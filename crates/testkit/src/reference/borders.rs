@@ -38,30 +38,8 @@ impl Counted<'_> {
         0.5 * (edges[0] + edges[1])
     }
 
-    /// The variance between the three classes of the bins before `middle`, before `near`, and
-    /// the rest.
-    pub fn explained(&self, middle: usize, near: usize) -> f64 {
-        let total: f64 = self.counts.iter().map(|n| f64::from(*n)).sum();
-        let sum = |bins: std::ops::Range<usize>| {
-            bins.fold([0.0, 0.0], |[n, s], bin| {
-                let count = f64::from(self.counts[bin]);
-                [n + count, s + count * self.middle(bin)]
-            })
-        };
-        let mean = sum(0..BINS)[1] / total;
-        [0..middle, middle..near, near..BINS]
-            .into_iter()
-            .map(sum)
-            .filter(|[n, _]| *n > 0.0)
-            .map(|[n, s]| n / total * (s / n - mean).powi(2))
-            .sum()
-    }
-
-    /// The pair (first bin of the middle, first bin of near) that explains most, and how much, by
-    /// trying all; `None` if all depths are in one bin.
-    pub fn search(&self) -> Option<([usize; 2], f64)> {
-        let mut best = None;
-        let mut most = 0.0;
+    /// How much of the variance the bins of a class are, by the first of them and the one behind them.
+    fn parts(&self) -> impl Fn(usize, usize) -> f64 {
         // Sums before each bin, so that a pair takes no loop.
         let mut before = vec![[0.0, 0.0]];
         for bin in 0..BINS {
@@ -70,14 +48,29 @@ impl Counted<'_> {
             before.push([n + count, s + count * self.middle(bin)]);
         }
         let [total, sum] = before[BINS];
-        let part = |first: usize, end: usize| {
+        move |first, end| {
             let [n, s] = [0, 1].map(|i| before[end][i] - before[first][i]);
             if n > 0.0 {
                 n / total * (s / n - sum / total).powi(2)
             } else {
                 0.0
             }
-        };
+        }
+    }
+
+    /// The variance between the three classes of the bins before `middle`, before `near`, and
+    /// the rest.
+    pub fn explained(&self, middle: usize, near: usize) -> f64 {
+        let part = self.parts();
+        part(0, middle) + part(middle, near) + part(near, BINS)
+    }
+
+    /// The pair (first bin of the middle, first bin of near) that explains most, and how much, by
+    /// trying all; `None` if all depths are in one bin.
+    pub fn search(&self) -> Option<([usize; 2], f64)> {
+        let mut best = None;
+        let mut most = 0.0;
+        let part = self.parts();
         for middle in 1..BINS {
             for near in middle + 1..BINS {
                 let all = part(0, middle) + part(middle, near) + part(near, BINS);

@@ -65,32 +65,6 @@ fn plane_steps(frame: &Frame, win: &Window) -> Steps {
     steps
 }
 
-/// As `plane_steps`, with taps at these distances (west, north, east, south) from the
-/// centre. `slope`: change of raw depth of the plane per unit of distance, across and down.
-fn uneven_plane_steps(frame: &Frame, win: &Window, at: [f64; 4], slope: [f64; 2]) -> Steps {
-    let [near, far] = frame.ends.expect("geometry");
-    let c = win.depths[1][1];
-    let xs = [-at[0], 0.0, at[2]];
-    let ys = [-at[1], 0.0, at[3]];
-    let across = !win.missing[0] && !win.missing[1];
-    let along = !win.missing[2] && !win.missing[3];
-    std::array::from_fn(|row| {
-        std::array::from_fn(|column| {
-            let centre = row == 1 && column == 1;
-            if centre || column != 1 && !across || row != 1 && !along {
-                return 0.0;
-            }
-            let plane = c + xs[column] * slope[0] + ys[row] * slope[1];
-            let plane = if is_background(c) {
-                0.0
-            } else {
-                plane.clamp(far, near)
-            };
-            frame.with_sky(win.depths[row][column]) - frame.with_sky(plane)
-        })
-    })
-}
-
 pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     if frame.ends.is_none() {
         return 0.0;
@@ -119,17 +93,6 @@ fn scaled_response(s: &Contours, steps: &Steps) -> f64 {
         }
         other => panic!("no reference of {other:?}"),
     }
-}
-
-/// The response of the corrected equations where the depth texture is smaller than the
-/// viewport, see `uneven_plane_steps`.
-pub fn uneven_response(
-    s: &Contours,
-    (frame, win): (&Frame, &Window),
-    at: [f64; 4],
-    slope: [f64; 2],
-) -> f64 {
-    scaled_response(s, &uneven_plane_steps(frame, win, at, slope))
 }
 
 /// Coverage by a line, 0 to 1, for a response.

@@ -36,7 +36,7 @@ pub struct Scene<'a> {
 }
 
 /// Radius in logical pixels by which something at a distance is out of focus.
-pub fn defocus(s: &Focus, distance: f64, focus_at: f64, reference: Option<f64>) -> f64 {
+fn defocus(s: &Focus, distance: f64, focus_at: f64, reference: Option<f64>) -> f64 {
     let apart = match reference {
         Some(length) => (distance - focus_at).abs() / length,
         None => (distance / focus_at).ln().abs(),
@@ -46,7 +46,7 @@ pub fn defocus(s: &Focus, distance: f64, focus_at: f64, reference: Option<f64>) 
 }
 
 /// The part that may be taken from another pixel. Distances and radii.
-pub fn taken(own: [f64; 2], other: [f64; 2]) -> f64 {
+fn taken(own: [f64; 2], other: [f64; 2]) -> f64 {
     if other[0] >= own[0] {
         1.0
     } else {

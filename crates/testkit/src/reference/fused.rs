@@ -68,32 +68,20 @@ fn colored(
 ) -> Colored {
     let alpha = input.opacity(x, y);
     let mut linear = input.light(x, y);
-    let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.at_near != s.at_far)
-        || style.get::<ToneRamp>().is_some()
-        || style.get::<Desaturation>().is_some()
-        || style.get::<Colorization>().is_some()
-        || style.get::<ColorHarmony>().is_some()
-        || style.get::<DepthLayers>().is_some()
-        || style.get::<BlackFlats>().is_some()
-        || style.get::<Contours>().is_some();
-    let mut depth = if reads_map {
-        pixel_depth(view, x, y)
-    } else {
-        [1.0, 0.0]
-    };
+    let mut depth = pixel_depth(view, x, y);
     if view.flip {
         depth.reverse();
     }
     let [d, l] = depth;
+    let opacity = alpha.max(1e-3);
+    let change = (input.change(x, y) + nudge).max(0.0);
     if let Some(s) = style.get::<ToneRamp>() {
-        let seen = linear.map(|c| (c / alpha.max(1e-3)).max(0.0) * (1.0 + nudge));
-        let change = (input.change(x, y) + nudge).max(0.0);
+        let seen = linear.map(|c| (c / opacity).max(0.0) * (1.0 + nudge));
         let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
         linear = std::array::from_fn(|i| mix(linear[i], tones[i] * alpha, alpha));
     }
     if let Some(s) = style.get::<ToneBands>() {
         let nudged = linear.map(|c| c * (1.0 + nudge));
-        let change = (input.change(x, y) + nudge).max(0.0);
         let banded = tone_bands::banded_color(s, nudged, change, 1.0);
         linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
     }
@@ -106,15 +94,12 @@ fn colored(
         linear = colorization::colorize(s, linear, d, l, saturation);
     }
     if let Some(s) = style.get::<ColorHarmony>() {
-        let opacity = alpha.max(1e-3);
         let seen = linear.map(|c| c / opacity);
         linear = color_harmony::harmonize(s, seen, d, l).map(|c| c * opacity);
     }
     if let Some(s) = style.get::<DepthLayers>() {
-        let seen = linear.map(|c| c / alpha.max(1e-3));
+        let seen = linear.map(|c| c / opacity * (1.0 + nudge));
         let weights = depth_layers::pixel_weights(s, view, [x, y]);
-        let change = (input.change(x, y) + nudge).max(0.0);
-        let seen = seen.map(|c| c * (1.0 + nudge));
         linear = depth_layers::color(s, seen, weights, change).map(|c| c * alpha);
     }
     Colored {
@@ -215,10 +200,8 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
                 let by = sketch::stray(s, inside, stroke, input.drawing, 1.0);
                 let at = [place[0] + by[0], place[1] + by[1]];
                 let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
-                blank
-                    * (1.0
-                        - (read::total(outlines, read::lines_at(ink, at, true, nudge)) * pressure)
-                            .clamp(0.0, 1.0))
+                let ink = read::total(outlines, read::lines_at(ink, at, true, nudge));
+                blank * (1.0 - (ink * pressure).clamp(0.0, 1.0))
             });
             linear = sketch::draw_sketch(s, with(linear, alpha), 1.0 - blank);
             alpha = 1.0;

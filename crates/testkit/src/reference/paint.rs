@@ -11,7 +11,7 @@ use super::{
 };
 
 /// Variance that is not seen.
-pub const UNSEEN: f64 = 1e-4;
+const UNSEEN: f64 = 1e-4;
 const SAMPLES: u32 = 64;
 
 /// What is painted, by column and row of the viewport.
@@ -135,7 +135,7 @@ pub fn box_areas(
 
 /// The factor for a box of half a side of `found` instead of `half`: how much of the pixel, at
 /// this distance, it contains, of what it should.
-pub fn reaching_share(found: f64, half: f64, distance: i64) -> f64 {
+fn reaching_share(found: f64, half: f64, distance: i64) -> f64 {
     (part_of_box(found, distance) / part_of_box(half, distance).max(1e-6)).min(1.0)
 }
 
@@ -150,7 +150,7 @@ fn over(pixel: Rgba, paint: Option<Rgb>, amount: f64) -> Rgba {
 }
 
 /// The weight of a place of the unit disc in the sector of this direction.
-pub fn sector_weight([x, y]: [f64; 2], direction: [f64; 2]) -> f64 {
+fn sector_weight([x, y]: [f64; 2], direction: [f64; 2]) -> f64 {
     const ZETA: f64 = 1.0 / 3.0;
     let gamma = 3.0 * PI / 16.0;
     let eta = (ZETA + gamma.cos()) / gamma.sin().powi(2);
@@ -161,7 +161,7 @@ pub fn sector_weight([x, y]: [f64; 2], direction: [f64; 2]) -> f64 {
 }
 
 /// The structure tensor around a pixel: Sobel, smoothed over 3 x 3 pixels.
-pub fn tensor(sheet: &Sheet, at: [usize; 2]) -> [f64; 3] {
+fn tensor(sheet: &Sheet, at: [usize; 2]) -> [f64; 3] {
     let luminance = |x: i64, y: i64| {
         let [r, g, b, _] = sheet.nearest([x, y]);
         color::luminance([r, g, b].map(root))
@@ -185,7 +185,7 @@ pub fn tensor(sheet: &Sheet, at: [usize; 2]) -> [f64; 3] {
 }
 
 /// Unit vector along the edge in a tensor, and how much of an edge it is.
-pub fn edge([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+fn edge([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let spread = (0.5 * (xx - yy)).hypot(xy);
     let certain = spread / (0.5 * (xx + yy) + UNSEEN);
     if spread < 1e-30 {

@@ -9,7 +9,7 @@ use bevy_comics::{ToneBands, effects::Equations};
 
 /// \[CL\] Eq. 6 for one channel of the display code, with its three ranges joined at
 /// 0.33 and 0.66.
-pub fn equation_6(c: f64) -> f64 {
+fn equation_6(c: f64) -> f64 {
     match c {
         c if c < 0.33 => c / 1.5,
         c if c < 0.66 => 0.33 + (c - 0.33) / 2.0,
@@ -32,7 +32,7 @@ pub fn band_tone(levels: f64, softness: f64, y: f64, change: f64) -> f64 {
 
 /// The colour at the luminance `target`, mixed with grey as far as the display needs
 /// it.
-pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
+fn with_luminance(linear: Rgb, target: f64) -> Rgb {
     let y = luminance(linear);
     if y < 1e-6 {
         return [target; 3];

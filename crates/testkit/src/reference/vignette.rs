@@ -5,7 +5,7 @@ use bevy_comics::{Vignette, effect::linear_rgb};
 
 /// Fraction of the colour that is mixed in. `at`: pixels from the top left corner of
 /// the viewport; `size`: of the viewport, pixels.
-pub fn cover(s: &Vignette, at: [f64; 2], size: [f64; 2]) -> f64 {
+fn cover(s: &Vignette, at: [f64; 2], size: [f64; 2]) -> f64 {
     let half = 0.5 * f64::from(s.softness.max(1e-3));
     let radius = f64::from(s.radius);
     // The viewport is [-1, 1] x [-1, 1] here: the corners are sqrt(2) from the centre.

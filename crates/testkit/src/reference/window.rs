@@ -43,14 +43,3 @@ pub fn map_steps(frame: &Frame, win: &Window) -> Steps {
 pub fn prewitt(steps: &Steps) -> f64 {
     gradient(steps, PREWITT)
 }
-
-/// The smaller of two slopes of the same sign, otherwise 0.
-pub fn minmod(before: f64, after: f64) -> f64 {
-    if before * after <= 0.0 {
-        0.0
-    } else if before.abs() < after.abs() {
-        before
-    } else {
-        after
-    }
-}
