@@ -261,11 +261,3 @@ fn both_passes_have_time_spans_in_the_engines_diagnostics() {
         assert!(measured, "{pass} is not among the diagnostics");
     }
 }
-
-#[test]
-fn a_prepass_of_the_games_own_stays() {
-    let mut small = small();
-    small.insert((DepthPrepass, Contours::default())).settle();
-    remove::<Contours>(&mut small);
-    assert!(has_prepass(&small));
-}

@@ -24,12 +24,29 @@ pub fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &st
     assert_eq!(found, scan, "{what}");
 }
 
+/// The range that the game reads, and the picture, which follows percentiles within the outermost bins: they
+/// are clamped to the extremes.
 #[test]
 fn every_method_reads_every_sample_of_a_rendered_view() {
     let samples = headless::adapter().expect("an adapter").samples;
     let mut small = Small::new(UVec2::new(71, 53), Msaa::Off);
     for samples in samples {
         small.restart(Msaa::from_samples(samples));
+        small.insert((Colorization::default(), VisibleDepthRange::default()));
+        let mut drawn = |map: DepthMap| {
+            small.insert(map).settle();
+            let what = format!("{:?}, {samples} samples", map.reduction);
+            assert!(small.ran(ComicsStage::DepthRange), "{what}");
+            assert_range_is_the_scan(&small, None, &what);
+            let smooths = small.ran(ComicsStage::RangeSmoothing);
+            assert_eq!(smooths, map.smoothing.is_some(), "{what}");
+            assert_eq!(small.errors(), 0, "{what}");
+            small.picture()
+        };
+        let plain = drawn(DepthMap {
+            smoothing: None,
+            ..default()
+        });
         for reduction in [
             ReductionMethod::Auto,
             ReductionMethod::BarrierFree,
@@ -37,15 +54,17 @@ fn every_method_reads_every_sample_of_a_rendered_view() {
             ReductionMethod::SharedMemory,
             ReductionMethod::PingPong,
         ] {
-            let map = DepthMap {
-                reduction,
+            let smoothing = Some(RangeSmoothing {
+                outliers: 1e-7,
                 ..default()
-            };
-            small.insert((map, VisibleDepthRange::default())).settle();
-            assert!(small.ran(ComicsStage::DepthRange), "{reduction:?}");
-            assert_range_is_the_scan(&small, None, &format!("{reduction:?}, {samples} samples"));
+            });
+            let smoothed = drawn(DepthMap {
+                reduction,
+                smoothing,
+                ..default()
+            });
+            assert!(smoothed == plain, "{reduction:?}, {samples} samples");
         }
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -162,13 +181,10 @@ fn the_range_stays_inside_the_viewport() {
 #[test]
 fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);
-    small
-        .insert((
-            Contours::default(),
-            Desaturation::default(),
-            VisibleDepthRange::default(),
-        ))
-        .settle();
+    // Eight bits are always finite.
+    small.insert((Hdr, VisibleDepthRange::default()));
+    small.insert((Contours::default(), Desaturation::default()));
+    small.settle();
     assert!(matches!(
         small.range(),
         Some(VisibleDepthRange::Visible { .. })

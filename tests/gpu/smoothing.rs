@@ -309,22 +309,6 @@ fn logarithm_and_power_are_exact_to_a_few_units() {
     }
 }
 
-#[test]
-fn one_long_frame_is_ten_short_ones() {
-    for offset in [Some(0.0), Some(0.1), None] {
-        let s = Smoothing { offset, ..SMOOTH };
-        let long = [frame(0.5, 0.01, 0.0), frame(0.9, 0.3, 0.1)];
-        let mut short = vec![long[0]];
-        short.extend([frame(0.9, 0.3, 0.01); 10]);
-        let (long, short) = (depths(&s, &long), depths(&s, &short));
-        for end in 0..2 {
-            let (a, b) = (long[1][end], short[10][end]);
-            assert!((a / b - 1.0).abs() < 1e-5, "{offset:?}: {a} and {b}");
-        }
-        assert_ne!(long[1], long[0], "{offset:?} has moved");
-    }
-}
-
 /// Fails unless the same range is drawn in all frames: that of the first.
 fn assert_rests(what: &str, frames: &[Frame]) {
     let first = frames[0].found.map(|found| found.map(f32::to_bits));

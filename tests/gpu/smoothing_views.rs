@@ -1,7 +1,6 @@
 //! The smoothed range in an app: what resets it and what does not.
 
 use bevy::camera::CameraProjection;
-use bevy_comics_testkit::headless;
 
 use crate::{prelude::*, range_views::assert_range_is_the_scan, small::Reshaped};
 
@@ -203,92 +202,6 @@ fn the_range_that_the_game_reads_is_the_exact_one() {
     intrude(&mut small);
     small.settle();
     assert_range_is_the_scan(&small, None, "a range that lags");
-}
-
-#[test]
-fn every_method_and_sample_count_smooths() {
-    let samples = headless::adapter().expect("an adapter").samples;
-    let mut small = Small::new(size(), Msaa::Off);
-    for samples in samples {
-        small.restart(Msaa::from_samples(samples));
-        for reduction in [
-            ReductionMethod::BarrierFree,
-            ReductionMethod::Subgroup,
-            ReductionMethod::SharedMemory,
-            ReductionMethod::PingPong,
-        ] {
-            let mut style = look(Some(RangeSmoothing {
-                // Within the outermost bins: clamped to the extremes.
-                outliers: 1e-7,
-                ..RangeSmoothing::default()
-            }));
-            style.depth_map.as_mut().expect("its own").reduction = reduction;
-            small.style(&style);
-            small.settle();
-            assert!(small.ran(ComicsStage::RangeSmoothing), "{reduction:?}");
-            let (_, smoothed) = small.pass();
-            small.style(&look(None));
-            small.settle();
-            let (_, plain) = small.pass();
-            assert_eq!(smoothed, plain, "{reduction:?}, {samples} samples");
-        }
-        assert_eq!(small.errors(), 0);
-    }
-}
-
-/// Pixels that differ by more than two codes.
-fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
-    let pairs = a.pixels().zip(b.pixels());
-    pairs
-        .filter(|(a, b)| (0..3).any(|i| a.0[i].abs_diff(b.0[i]) > 2))
-        .count()
-}
-
-#[test]
-fn percentiles_leave_a_speck_out_of_the_picture() {
-    let mut small = Small::new(UVec2::new(320, 200), Msaa::Off);
-    small.style(&look(Some(RangeSmoothing {
-        outliers: 0.02,
-        ..RangeSmoothing::OFF
-    })));
-    small.settle();
-    let before = small.picture();
-    let speck = intrude(&mut small);
-    // 0.1 % of the picture.
-    let at = Transform::from_xyz(1.0, 2.3, 4.9).with_scale(Vec3::splat(0.1));
-    small.world().entity_mut(speck).insert(at);
-    small.settle();
-    let after = small.picture();
-    let changed = apart(&before, &after);
-    assert!(changed > 0, "the speck itself is seen");
-    assert!(changed < 400, "{changed} pixels changed");
-    small.style(&look(None));
-    small.settle();
-    let extremes = apart(&after, &small.picture());
-    assert!(extremes > 5000, "the extremes change {extremes} pixels");
-}
-
-#[test]
-fn cameras_have_ranges_of_their_own() {
-    let mut small = small();
-    let second = new_target(small.world(), size(), TextureFormat::Rgba8UnormSrgb);
-    let style = look(Some(SLOW));
-    let other = small
-        .world()
-        .spawn(crate::small::camera(second.clone().into(), Msaa::Off))
-        .id();
-    style.apply(&mut small.world().commands().entity(other));
-    small.world().flush();
-    // The second camera is far away and has another range.
-    let back = Transform::from_xyz(3.0, 6.0, 20.0).looking_at(Vec3::ZERO, Vec3::Y);
-    small.world().entity_mut(other).insert(back);
-    small.settle();
-    let first = small.picture();
-    let both = small.headless.picture_of(&second);
-    small.world().despawn(other);
-    small.settle();
-    assert_eq!(small.picture(), first);
-    assert_ne!(first, both);
 }
 
 #[test]

@@ -71,11 +71,8 @@ fn of<E: Effect>(effect: E) -> ComicStyle {
     ComicStyle::new().with(effect)
 }
 
-/// A rectangle in pixels from the top left corner: left, top, right, bottom.
-type Rectangle4 = [f32; 4];
-
-/// A small box in front of a large one, before the sky.
-const BOXES: [(Rectangle4, f32); 2] = [
+/// A small box in front of a large one, before the sky: left, top, right, bottom in pixels, and the distance.
+const BOXES: [([f32; 4], f32); 2] = [
     ([50.3, 40.8, 190.7, 139.4], 60.0),
     ([90.6, 60.2, 140.9, 110.55], 5.0),
 ];
@@ -196,16 +193,7 @@ fn outlines_are_where_the_geometry_is() {
 
 #[test]
 fn contours_are_where_the_geometry_is() {
-    assert_contours(2.0);
-}
-
-#[test]
-#[ignore = "long: another width"]
-fn wide_contours_are_where_the_geometry_is() {
-    assert_contours(4.0);
-}
-
-fn assert_contours(width: f32) {
+    let width = Contours::default().width;
     let mut small = boxes();
     for scale in SCALES {
         override_main_pass(&mut small, main_pass(scale));
@@ -214,10 +202,9 @@ fn assert_contours(width: f32) {
             ContourOperator::Sobel,
             ContourOperator::Laplace,
         ] {
-            let what = format!("{operator:?} contours of {width} px, scale {scale}");
+            let what = format!("{operator:?} contours, scale {scale}");
             let contours = Contours {
                 operator,
-                width,
                 ..default()
             };
             let ink = ink(&mut small, &of(contours));
@@ -238,12 +225,13 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
     let first = UVec2::new(60, 40);
     let style = of(Outlines::default()).with(Contours::default());
     let mut small = new();
+    let viewport = Viewport {
+        physical_position: first,
+        physical_size: size,
+        ..default()
+    };
     small.insert(Camera {
-        viewport: Some(Viewport {
-            physical_position: first,
-            physical_size: size,
-            ..default()
-        }),
+        viewport: Some(viewport),
         ..default()
     });
     let mut alone = Small::new(size, Msaa::Off);
@@ -267,7 +255,7 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
     assert_eq!(small.errors() + alone.errors(), 0);
 }
 
-/// The row of the horizon of `grazing`, in pixels from the top, at a column.
+/// The row of the horizon, in pixels from the top, at a column.
 fn horizon(camera: &Transform, x: f32) -> f32 {
     let tan = (std::f32::consts::PI / 8.0).tan();
     let half = Vec2::new(WIDTH as f32, HEIGHT as f32) * 0.5;
@@ -279,55 +267,35 @@ fn horizon(camera: &Transform, x: f32) -> f32 {
 
 #[test]
 fn a_grazing_plane_has_lines_at_its_horizon_alone() {
-    assert_lines_at_the_horizon_alone(&[0.05], &[2.0]);
-}
-
-#[test]
-#[ignore = "long: two heights, and contours of more widths"]
-fn a_plane_seen_from_above_has_lines_at_its_horizon_alone() {
-    assert_lines_at_the_horizon_alone(&[1.7, 0.05], &[1.0, 2.0, 5.0]);
-}
-
-/// Outlines, and contours of some widths, from some heights.
-fn assert_lines_at_the_horizon_alone(heights: &[f32], widths: &[f32]) {
     let mut small = new();
-    for &height in heights {
-        small.restart(Msaa::Off);
-        small.clear();
-        put(
-            &mut small,
-            Plane3d::default().mesh().size(40_000.0, 40_000.0),
-            Color::srgb(0.8, 0.7, 0.5),
-            Transform::IDENTITY,
-        );
-        let eye = Vec3::new(0.0, height, 0.0);
-        let target = eye - Vec3::new(0.3, 0.02, 1.0);
-        look(&mut small, eye, target, 0.1);
-        let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
-        for scale in SCALES {
-            override_main_pass(&mut small, main_pass(scale));
-            let mut styles = vec![("outlines".into(), 2.0, of(Outlines::default()))];
-            for &width in widths {
-                let contours = Contours { width, ..default() };
-                styles.push((format!("contours of {width} px"), width, of(contours)));
-            }
-            for (name, width, style) in styles {
-                let what = format!("{name}, {height} m, scale {scale}");
-                let ink = ink(&mut small, &style);
-                // Half a texel, the line, and a pixel for the odd part of its width; the
-                // plane ends before the horizon, by 0.02 pixels.
-                let most = scale + 0.5 * width + 1.0;
-                let mut wrong = 0;
-                for (i, at) in centres() {
-                    let away = (at.y - horizon(&camera, at.x)).abs();
-                    wrong += usize::from(ink[i] > 0.02 && away > most);
-                }
-                assert_eq!(wrong, 0, "{what}: pixels of false ink");
-                assert!(ink.iter().any(|i| *i > 0.4), "{what}: no horizon");
-            }
+    small.clear();
+    let plane = Plane3d::default().mesh().size(40_000.0, 40_000.0);
+    let color = Color::srgb(0.8, 0.7, 0.5);
+    put(&mut small, plane, color, Transform::IDENTITY);
+    let eye = Vec3::new(0.0, 0.05, 0.0);
+    let target = eye - Vec3::new(0.3, 0.02, 1.0);
+    look(&mut small, eye, target, 0.1);
+    let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
+    for scale in SCALES {
+        override_main_pass(&mut small, main_pass(scale));
+        for (name, style) in [
+            ("outlines", of(Outlines::default())),
+            ("contours", of(Contours::default())),
+        ] {
+            let ink = ink(&mut small, &style);
+            // Half a texel, the line of 2 px, and a pixel for the odd part of its width; the
+            // plane ends before the horizon, by 0.02 pixels.
+            let most = scale + 1.0 + 1.0;
+            let is_wrong = |(i, at): &(usize, Vec2)| {
+                ink[*i] > 0.02 && (at.y - horizon(&camera, at.x)).abs() > most
+            };
+            let wrong = centres().filter(is_wrong).count();
+            assert_eq!(wrong, 0, "{name}, scale {scale}: pixels of false ink");
+            let lined = ink.iter().any(|i| *i > 0.4);
+            assert!(lined, "{name}, scale {scale}: no horizon");
         }
-        assert_eq!(small.errors(), 0);
     }
+    assert_eq!(small.errors(), 0);
 }
 
 /// The paper's contours include slopes, and its outlines compare 5 x 5 neighbours, between which a slope

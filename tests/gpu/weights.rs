@@ -29,17 +29,27 @@ const ALL: LineWeight = LineWeight {
     pressure_length: 30.0,
 };
 
-/// Every pixel of the small scene, at two widths.
+/// Every pixel of the small scene; in a multisampled view, the light is that of the chosen samples.
 #[test]
 fn every_factor_matches_the_reference() {
-    let mut small = Small::new(SIZE, Msaa::Off);
+    assert_pixels(Msaa::Off, SIZE, Outlines::default(), &[1.5, 4.0]);
+}
+
+#[test]
+fn every_factor_of_silhouettes_in_a_multisampled_view_matches_the_reference() {
+    let size = UVec2::new(64, 44);
+    assert_pixels(Msaa::Sample4, size, Outlines::SILHOUETTES, &[3.0]);
+}
+
+fn assert_pixels(msaa: Msaa, size: UVec2, outlines: Outlines, widths: &[f32]) {
+    let mut small = Small::new(size, msaa);
     let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
-    for width in [1.5, 4.0] {
+    for &width in widths {
         let style = outlined(Outlines {
             width,
             weight: ALL,
-            ..default()
+            ..outlines
         });
         assert_pass_matches_the_reference(&mut small, &style, None, &format!("{width} px"));
     }
@@ -140,27 +150,26 @@ fn lines_follow_the_light() {
         .world()
         .spawn((KeyLight, Transform::default(), Object))
         .id();
-    for sign in [1.0, -1.0] {
-        let shine = Transform::default().looking_to(Vec3::NEG_X * sign, Vec3::Y);
+    // The steps beside the rim are no lines.
+    let rim = Silhouettes {
+        threshold: 0.1,
+        ..default()
+    };
+    let outlines = Outlines {
+        silhouettes: Some(rim),
+        ..silhouettes(4.0, weight)
+    };
+    for (shine, [left, right]) in [(Vec3::NEG_X, [6.0, 0.0]), (Vec3::X, [0.0, 6.0])] {
+        let shine = Transform::default().looking_to(shine, Vec3::Y);
         small.world().entity_mut(light).insert(shine);
-        // The steps beside the rim are no lines.
-        let rim = Silhouettes {
-            threshold: 0.1,
-            ..default()
-        };
-        let outlines = Outlines {
-            silhouettes: Some(rim),
-            ..silhouettes(4.0, weight)
-        };
         let picture = drawn(&mut small, outlines);
-        let [left, right] = [18..38, 58..78].map(|columns| ink_across(&picture, columns, 32));
-        let [lit, dark] = if sign > 0.0 {
-            [right, left]
-        } else {
-            [left, right]
-        };
-        assert!(lit < 0.02, "{sign}: {left}, {right}");
-        assert!((dark - 6.0).abs() < 0.02, "{sign}: {left}, {right}");
+        for (columns, want) in [(18..38, left), (58..78, right)] {
+            let found = ink_across(&picture, columns, 32);
+            assert!(
+                (found - want).abs() < 0.02,
+                "{shine:?}: {found}, not {want}"
+            );
+        }
     }
 }
 
@@ -201,52 +210,6 @@ fn lines_follow_perspective() {
     // The middle between 12 and 30 is 21.
     assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.02, "{near}");
     assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.02, "{far}");
-}
-
-/// A line that ends in the middle of the picture is thin at its end, whole behind the
-/// taper, and grows in between.
-#[test]
-fn a_line_tapers_towards_its_loose_end() {
-    let weight = |taper| LineWeight {
-        taper,
-        ..LineWeight::EVEN
-    };
-    let mut small = towards_the_sky(SIZE);
-    // A slot that closes: the wall behind it comes nearer from left to right, until there is
-    // no step any more.
-    small.put(
-        Rectangle::new(120.0, 80.0),
-        unlit(Color::WHITE),
-        Transform::from_xyz(0.0, 0.0, -65.0)
-            .with_rotation(Quat::from_rotation_y(-30f32.to_radians())),
-    );
-    wall(&mut small, [-60.0, 0.0], [60.0, 40.0], 50.0);
-    let profile = |small: &mut Small, taper| {
-        let picture = drawn(small, silhouettes(4.0, weight(taper)));
-        let column = |x: u32| black_ink(&picture, (20..44).map(|y| (x, y)));
-        (0..96).map(column).collect::<Vec<f64>>()
-    };
-    let blunt = profile(&mut small, 0.0);
-    let tapered = profile(&mut small, 24.0);
-    // The end is round: half of the width beyond the last crack.
-    let end = blunt.iter().position(|width| *width < 0.01);
-    let end = end.expect("an end") - 2;
-    assert!((60..90).contains(&end), "{blunt:?}");
-    assert_eq!(
-        blunt[..end - 30],
-        tapered[..end - 30],
-        "whole behind the taper"
-    );
-    for x in end - 24..end {
-        assert!(tapered[x] <= tapered[x - 1] + 1e-3, "{x}: {tapered:.2?}");
-    }
-    // Half of the taper's length from the end, the width is half: the end is known to a crack,
-    // over which it changes by 1.5 / 24. `logical_pixels.rs` has every crack of a taper.
-    let half = tapered[end - 12] / blunt[end - 12];
-    assert!(
-        (half - 0.5).abs() < 1.5 / 24.0 + 0.02,
-        "{half}: {tapered:.2?}"
-    );
 }
 
 /// Lines fade as the engine's fog covers a black surface at the same place, at the middle of
@@ -314,26 +277,6 @@ fn fogged_black(small: &mut Small, wall: Entity) -> image::RgbaImage {
     let black = small.picture();
     paint(small, Color::WHITE);
     black
-}
-
-/// Silhouettes alone, in a multisampled view: the light is that of the chosen samples.
-#[test]
-fn lines_follow_the_light_in_multisampled_views() {
-    let mut small = Small::new(UVec2::new(64, 44), Msaa::Sample4);
-    let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
-    small.world().spawn((KeyLight, light, Object));
-    let lit = LineWeight {
-        shade: 0.6,
-        lit: 0.5,
-        outer: 1.5,
-        taper: 8.0,
-        perspective: 0.5,
-        pressure: 0.6,
-        pressure_length: 16.0,
-        ..LineWeight::EVEN
-    };
-    let outlines = silhouettes(3.0, lit);
-    assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, "4 samples");
 }
 
 /// Ink of every row of the picture between two columns.

@@ -60,19 +60,15 @@ fn cameras_with_different_samples_share_a_target() {
     };
     let first = small.camera;
     assert!(has(&small, first) && !has(&small, second));
-    assert_eq!(
-        outcome(&small, second, ComicsStage::Stylize),
-        Some(StageOutcome::Ran)
-    );
+    let styled = outcome(&small, second, ComicsStage::Stylize);
+    assert_eq!(styled, Some(StageOutcome::Ran));
     // With the same samples, both have one; and again not.
-    small.insert(Msaa::Sample4);
-    small.headless.step(8);
-    assert!(has(&small, first) && has(&small, second));
-    assert_eq!(small.errors(), 0, "the same samples");
-    small.insert(Msaa::Off);
-    small.headless.step(8);
-    assert!(has(&small, first) && !has(&small, second));
-    assert_eq!(small.errors(), 0, "other samples");
+    for (msaa, same) in [(Msaa::Sample4, true), (Msaa::Off, false)] {
+        small.insert(msaa);
+        small.headless.step(8);
+        assert!(has(&small, first) && has(&small, second) == same);
+        assert_eq!(small.errors(), 0, "{msaa:?}");
+    }
     // The prepass of a game stays, and the other camera goes without.
     small.world().entity_mut(second).insert(DepthPrepass);
     small.headless.step(8);
@@ -138,6 +134,12 @@ fn prepasses_of_a_game_with_different_samples_are_reported() {
     assert!(small.ran(ComicsStage::ObjectIds) && small.ran(ComicsStage::DrawLines));
 }
 
+/// A wall before half of the scene.
+fn put_wall(small: &mut Small) -> Entity {
+    let at = Transform::from_xyz(0.6, 0.5, 2.0);
+    small.put(Cuboid::new(1.2, 3.0, 0.2), StandardMaterial::default(), at)
+}
+
 /// Objects that the engine leaves out because others hide them are not missed, from the first frame on and
 /// where it begins later.
 #[test]
@@ -148,12 +150,7 @@ fn occlusion_culling_changes_nothing() {
     };
     let mut small = Small::new(size(), Msaa::Off);
     small.style(&many_passes());
-    // A wall before half of the scene.
-    small.put(
-        Cuboid::new(1.2, 3.0, 0.2),
-        StandardMaterial::default(),
-        Transform::from_xyz(0.6, 0.5, 2.0),
-    );
+    put_wall(&mut small);
     small.settle();
     let (before, ids) = shoot(&mut small);
     assert!(ids.iter().any(|id| id[0] != 0), "no ids");
@@ -168,11 +165,10 @@ fn occlusion_culling_changes_nothing() {
     small.headless.step(6);
     check(&mut small);
     // A camera that has it from its first frame on.
-    let (old, target) = (small.camera, small.headless.render_target());
-    let world = small.world();
-    world.despawn(old);
-    let new = world.spawn((camera(target, Msaa::Off), OcclusionCulling));
-    small.camera = new.id();
+    let target = small.headless.render_target();
+    small.camera_mut().despawn();
+    let new = (camera(target, Msaa::Off), OcclusionCulling);
+    small.camera = small.world().spawn(new).id();
     small.style(&many_passes());
     small.settle();
     check(&mut small);
@@ -186,11 +182,7 @@ fn behind_a_wall(style: Option<&ComicStyle>) -> [image::RgbaImage; 2] {
     if let Some(style) = style {
         small.style(style);
     }
-    let wall = small.put(
-        Cuboid::new(1.2, 3.0, 0.2),
-        StandardMaterial::default(),
-        Transform::from_xyz(0.6, 0.5, 2.0),
-    );
+    let wall = put_wall(&mut small);
     small.headless.step(8);
     small.world().despawn(wall);
     small.headless.step(1);
@@ -205,11 +197,8 @@ fn behind_a_wall(style: Option<&ComicStyle>) -> [image::RgbaImage; 2] {
 #[test]
 fn what_is_no_longer_hidden_is_styled_at_once() {
     let [first, later] = behind_a_wall(None);
-    assert_eq!(
-        changed(&first, &later),
-        0.0,
-        "the engine draws it later: nothing is tested"
-    );
+    let off = changed(&first, &later);
+    assert_eq!(off, 0.0, "the engine draws it later: nothing is tested");
     // Without smoothing, the range is that of its own frame.
     let style = many_passes().with_depth_map(DepthMap {
         smoothing: None,
@@ -251,14 +240,10 @@ fn the_largest_target_is_styled() {
 /// An opaque and a transparent cube with lightmaps.
 fn put_lightmapped(small: &mut Small) {
     let mut mesh = Mesh::from(Cuboid::from_length(0.8));
-    let places = mesh
-        .attribute(Mesh::ATTRIBUTE_UV_0)
-        .expect("a cube has some");
-    mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, places.clone());
-    let white = small
-        .world()
-        .resource_mut::<Assets<Image>>()
-        .add(Image::default());
+    let places = mesh.attribute(Mesh::ATTRIBUTE_UV_0).cloned();
+    mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, places.expect("a cube has some"));
+    let mut images = small.world().resource_mut::<Assets<Image>>();
+    let white = images.add(Image::default());
     for (x, alpha_mode) in [(-1.5, AlphaMode::Opaque), (1.5, AlphaMode::Blend)] {
         let material = StandardMaterial {
             alpha_mode,
