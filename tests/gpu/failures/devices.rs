@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    light::cluster::GlobalClusterSettings, pbr::Lightmap,
-    render::occlusion_culling::OcclusionCulling,
-};
+use bevy::{pbr::Lightmap, render::occlusion_culling::OcclusionCulling};
 use bevy_comics_testkit::device::gpu;
 
 use super::*;
@@ -26,8 +23,7 @@ fn with_second_camera(size: UVec2, msaa: Msaa) -> (Small, Entity) {
     let mut small = Small::new(size, Msaa::Off);
     // Where a later pass of a frame fails, wgpu runs none of its commands but maps the engine's copy of the
     // numbers of clusters, whose memory counts as written and is not: the engine (Bevy 0.19.1) overflows.
-    let mut clusters = small.world().resource_mut::<GlobalClusterSettings>();
-    clusters.gpu_clustering = None;
+    cluster_on_cpu(&mut small);
     let target = small.headless.render_target();
     let second = small.world().spawn(camera(target, msaa)).id();
     let mut own = small.world().get_mut::<Camera>(second).expect("a camera");
@@ -292,8 +288,7 @@ fn a_device_without_compute_shaders_draws_a_style() {
     let mut small = Small::with(options, Msaa::Off);
     put_lightmapped(&mut small);
     // The engine decides by the adapter, not by its limits, whether it has compute shaders, and fails.
-    let mut clusters = small.world().resource_mut::<GlobalClusterSettings>();
-    clusters.gpu_clustering = None;
+    cluster_on_cpu(&mut small);
     let plain = small.settle().picture();
     let of_engine = small.errors();
     small.settle();
