@@ -83,19 +83,21 @@ fn a_look_loads_an_image_of_its_assets() {
 type Field = (String, &'static str, Option<&'static TypeInfo>);
 
 fn named(field: &'static NamedField) -> Field {
-    (
-        field.name().to_owned(),
-        field.type_path(),
-        field.type_info(),
-    )
+    let name = field.name().to_owned();
+    (name, field.type_path(), field.type_info())
 }
 
 fn numbered(field: &'static UnnamedField) -> Field {
-    (
-        field.index().to_string(),
-        field.type_path(),
-        field.type_info(),
-    )
+    let index = field.index().to_string();
+    (index, field.type_path(), field.type_info())
+}
+
+fn of_variant(variant: &'static VariantInfo) -> Vec<Field> {
+    match variant {
+        VariantInfo::Struct(variant) => variant.iter().map(named).collect(),
+        VariantInfo::Tuple(variant) => variant.iter().map(numbered).collect(),
+        VariantInfo::Unit(_) => Vec::new(),
+    }
 }
 
 fn fields(info: &'static TypeInfo) -> Vec<Field> {
@@ -104,15 +106,7 @@ fn fields(info: &'static TypeInfo) -> Vec<Field> {
         TypeInfo::Struct(info) => info.iter().map(named).collect(),
         TypeInfo::TupleStruct(info) => info.iter().map(numbered).collect(),
         TypeInfo::Tuple(info) => info.iter().map(numbered).collect(),
-        TypeInfo::Enum(info) => (info.iter())
-            .flat_map(|variant| -> Vec<Field> {
-                match variant {
-                    VariantInfo::Struct(variant) => variant.iter().map(named).collect(),
-                    VariantInfo::Tuple(variant) => variant.iter().map(numbered).collect(),
-                    VariantInfo::Unit(_) => Vec::new(),
-                }
-            })
-            .collect(),
+        TypeInfo::Enum(info) => info.iter().flat_map(of_variant).collect(),
         TypeInfo::List(info) => item(info.item_ty().path(), info.item_info()),
         TypeInfo::Array(info) => item(info.item_ty().path(), info.item_info()),
         _ => Vec::new(),

@@ -11,7 +11,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     prelude::*,
-    smoothing::{HOLD, SNAP},
+    smoothing::{HOLD, SNAP, bind, record, words},
 };
 
 const ORTHOGRAPHIC: u32 = 1;
@@ -24,10 +24,6 @@ fn divide() -> &'static wgpu::ComputePipeline {
         let module = wgsl::module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
         gpu().compute_pipeline(module, "divide")
     })
-}
-
-fn words(values: impl IntoIterator<Item = u32>) -> Vec<u8> {
-    values.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
 /// A frame: what was counted, the fraction of the way that it makes up, and its flags.
@@ -53,42 +49,22 @@ fn run(frames: &[Frame]) -> Vec<Option<[f32; 2]>> {
             Bins::Octaves => ([0.0; 2], 0),
             Bins::Window(ends) => (ends.map(|d| d as f32), ORTHOGRAPHIC),
         };
-        let smoothing = [*offset as f32, 0.0, 0.0, 0.0, frame.fraction, 0.0, 0.0].map(f32::to_bits);
-        let smoothing = words(smoothing.into_iter().chain([frame.flags | orthographic]));
-        let histogram = (counts.iter().copied())
-            .chain([counts.iter().sum()])
-            .chain(window.map(f32::to_bits));
+        let mut smoothing = [0; 8];
+        smoothing[0] = (*offset as f32).to_bits();
+        smoothing[4] = frame.fraction.to_bits();
+        smoothing[7] = frame.flags | orthographic;
+        let mut histogram = counts.to_vec();
+        histogram.push(counts.iter().sum());
+        histogram.extend(window.map(f32::to_bits));
         let drawn = gpu.buffer(&[0; 16], usage);
-        let buffers = [
-            gpu.buffer(&smoothing, wgpu::BufferUsages::UNIFORM),
-            gpu.buffer(&words(histogram), wgpu::BufferUsages::STORAGE),
-            state.clone(),
-            drawn.clone(),
-        ];
-        let entries: Vec<_> = (buffers.iter().enumerate())
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: binding as u32,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &divide().get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let smoothing = gpu.buffer(&words(&smoothing), wgpu::BufferUsages::UNIFORM);
+        let histogram = gpu.buffer(&words(&histogram), wgpu::BufferUsages::STORAGE);
+        let group = bind(divide(), [&smoothing, &histogram, &state, &drawn]);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(divide());
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        }
+        record(&mut encoder, divide(), &group);
         gpu.queue.submit([encoder.finish()]);
         let bytes = gpu.read(&drawn);
-        let word = |at: usize| {
-            let bytes = [0, 1, 2, 3].map(|i| bytes[4 * at + i]);
-            f32::from_le_bytes(bytes)
-        };
+        let word = |at: usize| f32::from_le_bytes([0, 1, 2, 3].map(|i| bytes[4 * at + i]));
         found.push((word(2) > 0.0).then(|| [word(2), word(3)]));
     }
     found
@@ -192,6 +168,16 @@ fn three(by: usize) -> Vec<u32> {
     counts
 }
 
+/// Frames that make up a part of the way each.
+fn frames(scenes: &[Vec<u32>], fraction: f32) -> Vec<Frame<'_>> {
+    let frames = scenes.iter().map(|counts| Frame {
+        counted: counted(counts),
+        fraction,
+        flags: 0,
+    });
+    frames.collect()
+}
+
 fn counted(counts: &[u32]) -> Counted<'_> {
     Counted {
         bins: Bins::Octaves,
@@ -203,15 +189,8 @@ fn counted(counts: &[u32]) -> Counted<'_> {
 #[test]
 fn borders_rest_until_others_explain_more_and_then_follow_like_their_reference() {
     // The heap comes nearer, so that it belongs to the others at the end.
-    let scenes: Vec<Vec<u32>> = (0..60).map(|k| three(k.min(50))).collect();
-    let frames: Vec<Frame> = (scenes.iter())
-        .chain(std::iter::repeat_n(&scenes[59], 120))
-        .map(|counts| Frame {
-            counted: counted(counts),
-            fraction: 0.15,
-            flags: 0,
-        })
-        .collect();
+    let scenes: Vec<Vec<u32>> = (0..180).map(|k| three(k.min(50))).collect();
+    let frames = frames(&scenes, 0.15);
     let found = run(&frames);
     let mut reference = Borders::default();
     let mut moved = 0;
@@ -262,14 +241,7 @@ fn noise_moves_no_border() {
             counts
         })
         .collect();
-    let frames: Vec<Frame> = (scenes.iter())
-        .map(|counts| Frame {
-            counted: counted(counts),
-            fraction: 0.1,
-            flags: 0,
-        })
-        .collect();
-    let found = run(&frames);
+    let found = run(&frames(&scenes, 0.1));
     assert!(
         found[0].is_some() && found.iter().all(|f| *f == found[0]),
         "{found:?}"

@@ -58,19 +58,10 @@ fn dashed(small: &mut Small, gap: f32, upright: bool, color: Color) {
 /// asked look like before.
 #[test]
 fn a_wire_with_short_gaps_looks_like_a_whole_one() {
-    assert_gaps_close(&[(false, &[2, 3, 4]), (true, &[3])]);
-}
-
-#[test]
-#[ignore = "long: gaps of every length in both directions"]
-fn wires_with_gaps_of_any_length_look_like_whole_ones() {
-    assert_gaps_close(&[(false, &[1, 2, 3, 4]), (true, &[1, 2, 3, 4])]);
-}
-
-/// Whether a wire is upright, and the lengths of gaps.
-fn assert_gaps_close(wires: &[(bool, &[u32])]) {
+    // Whether the wire is upright, and the lengths of gaps.
+    let wires: [(bool, &[u32]); 2] = [(false, &[1, 2, 3, 4]), (true, &[3])];
     let mut small = towards_the_sky(SIZE);
-    for &(upright, gaps) in wires {
+    for (upright, gaps) in wires {
         dashed(&mut small, 0.0, upright, Color::WHITE);
         let whole = drawn(&mut small, thin(0));
         let ink = mask(&whole).into_iter().filter(|ink| *ink).count();
@@ -79,25 +70,20 @@ fn assert_gaps_close(wires: &[(bool, &[u32])]) {
             dashed(&mut small, gap as f32, upright, Color::WHITE);
             let before = drawn(&mut small, thin(0));
             assert!(before != whole);
+            let pieces = fragments(&mask(&before), SIZE.x as usize, 1000);
+            assert!(pieces >= 4);
             for bridge in 1..=3 {
-                let found = drawn(&mut small, thin(bridge));
-                let want = if bridge >= gap { &whole } else { &before };
-                let length = mask(want).into_iter().filter(|ink| *ink).count();
-                let differ = mask(&found)
-                    .iter()
-                    .zip(mask(want))
-                    .filter(|(a, b)| **a != *b)
-                    .count();
+                let found = mask(&drawn(&mut small, thin(bridge)));
+                let is_closed = bridge >= gap;
+                let want = mask(if is_closed { &whole } else { &before });
+                let differ = found.iter().zip(want).filter(|(a, b)| **a != *b).count();
+                let parts = fragments(&found, SIZE.x as usize, 1000);
                 // The last piece is cut where the whole wire ends.
+                let (most, want) = if is_closed { (8, 1) } else { (0, pieces) };
                 assert!(
-                    differ <= if bridge >= gap { 8 } else { 0 },
-                    "upright {upright}, gap {gap}, bridge {bridge}: {differ} of {length}"
+                    differ <= most && parts == want,
+                    "upright {upright}, gap {gap}, bridge {bridge}: {differ}, {parts} of {want}"
                 );
-                let parts = fragments(&mask(&found), SIZE.x as usize, 1000);
-                let pieces = fragments(&mask(&before), SIZE.x as usize, 1000);
-                assert!(pieces >= 4);
-                let want = if bridge >= gap { 1 } else { pieces };
-                assert_eq!(parts, want, "upright {upright}, gap {gap}, bridge {bridge}");
             }
         }
     }
@@ -112,23 +98,22 @@ fn thin_wires_at_small_angles_are_whole() {
         for upright in [false, true] {
             towards_the_sky_again(&mut small, Msaa::Off);
             wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 900.0);
-            let angle = f32::atan(slope)
-                + if upright {
-                    std::f32::consts::FRAC_PI_2
-                } else {
-                    0.0
-                };
+            let turn = if upright {
+                std::f32::consts::FRAC_PI_2
+            } else {
+                0.0
+            };
             small.put(
                 Rectangle::new(50.0, thickness),
                 unlit(Color::WHITE),
-                Transform::from_xyz(0.31, 0.17, -100.0).with_rotation(Quat::from_rotation_z(angle)),
+                Transform::from_xyz(0.31, 0.17, -100.0)
+                    .with_rotation(Quat::from_rotation_z(f32::atan(slope) + turn)),
             );
             let parts = |small: &mut Small, bridge| {
                 let picture = drawn(small, thin(bridge));
                 fragments(&mask(&picture), SIZE.x as usize, 1000)
             };
             let [open, closed] = [0, 3].map(|bridge| parts(&mut small, bridge));
-            println!("slope {slope}, {thickness} px, upright {upright}: {open} -> {closed}");
             assert!(open >= 5, "{open}");
             assert_eq!(closed, 1, "slope {slope}, upright {upright}");
         }
@@ -206,46 +191,25 @@ fn put_wires(small: &mut Small) {
 /// Every pixel, with gaps in rows, columns, and at the borders of cells and words.
 #[test]
 fn closed_gaps_match_the_reference() {
-    assert_closed_as_reference(&[(3, &LINES[0]), (2, &LINES[1])]);
-}
-
-#[test]
-#[ignore = "long: gaps of every length in every kind of line"]
-fn closed_gaps_of_all_lines_match_the_reference() {
-    let cases = LINES
-        .each_ref()
-        .map(|lines| [(1, lines), (2, lines), (3, lines)]);
-    assert_closed_as_reference(cases.as_flattened());
-}
-
-/// Width, weight and continuity of lines.
-type Lines = (f32, LineWeight, f32);
-
-const LINES: [Lines; 3] = [
-    (2.0, LineWeight::EVEN, 8.0),
-    (1.0, LineWeight::EVEN, 0.0),
-    (
-        5.0,
-        LineWeight {
-            outer: 1.4,
-            inner: 0.6,
-            taper: 9.0,
-            perspective: 0.5,
-            ..LineWeight::EVEN
-        },
-        12.0,
-    ),
-];
-
-fn assert_closed_as_reference(cases: &[(u32, &Lines)]) {
     let mut small = Small::new(UVec2::new(101, 70), Msaa::Off);
     put_wires(&mut small);
-    for &(bridge, &(width, weight, continuity)) in cases {
+    let weight = LineWeight {
+        outer: 1.4,
+        inner: 0.6,
+        taper: 9.0,
+        perspective: 0.5,
+        ..LineWeight::EVEN
+    };
+    for (gap_closing, width, weight, hysteresis) in [
+        (3, 2.0, LineWeight::EVEN, 8.0),
+        (2, 1.0, LineWeight::EVEN, 0.0),
+        (1, 5.0, weight, 12.0),
+    ] {
         let outlines = Outlines {
-            gap_closing: bridge,
+            gap_closing,
             width,
             weight,
-            hysteresis: continuity,
+            hysteresis,
             hysteresis_ratio: 0.3,
             silhouettes: Some(Silhouettes {
                 threshold: 0.1,
@@ -253,7 +217,7 @@ fn assert_closed_as_reference(cases: &[(u32, &Lines)]) {
             }),
             ..default()
         };
-        let what = format!("bridge {bridge}, {width} px");
+        let what = format!("gaps of {gap_closing}, {width} px");
         assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
     assert_eq!(small.errors(), 0);

@@ -4,6 +4,8 @@
 
 use bevy_comics_testkit::{device::gpu, work::along_cracks};
 
+use image::RgbaImage;
+
 use crate::prelude::*;
 
 /// No multiple of the widths and heights of blocks, cells and tiles.
@@ -38,13 +40,11 @@ fn is_by_fragments(studio: &Studio) -> bool {
         == Some(StageOutcome::Skipped(SkipReason::NoComputeShaders))
 }
 
-/// Fails unless a picture shows the same lines as another one, and that one shows any.
-fn assert_same(
-    name: &str,
-    plain: &image::RgbaImage,
-    wanted: &image::RgbaImage,
-    found: &image::RgbaImage,
-) {
+/// Fails unless the app without compute passes draws the same lines as the other one, and these any.
+fn assert_same(with: &mut Studio, without: &mut Studio, plain: &RgbaImage, named: &Named) {
+    let (name, style) = named;
+    let [wanted, found] = [&mut *with, &mut *without].map(|studio| studio.shoot(Some(style)));
+    assert!(is_by_fragments(without) && !is_by_fragments(with), "{name}");
     let far = (wanted.as_raw().iter().zip(found.as_raw()))
         .filter(|(a, b)| a.abs_diff(**b) > 1)
         .count();
@@ -54,6 +54,9 @@ fn assert_same(
     assert_eq!(far, 0, "{name}: {far} values differ");
 }
 
+/// A style and its name.
+type Named = (&'static str, ComicStyle);
+
 fn outlines(width: f32) -> ComicStyle {
     ComicStyle::new().with(Outlines {
         width,
@@ -61,68 +64,43 @@ fn outlines(width: f32) -> ComicStyle {
     })
 }
 
-fn styles() -> [(&'static str, ComicStyle); 4] {
-    [
-        ("outlines", outlines(2.0)),
-        ("wider outlines", outlines(16.0)),
-        ("sketch", outlines(1.5).with(Sketch::default())),
-        ("contours", ComicStyle::new().with(Contours::default())),
-    ]
-}
-
-/// The parts of [`styles`], and lines of a width between theirs.
-fn more_styles() -> [(&'static str, ComicStyle); 3] {
-    [
-        ("wide outlines", outlines(3.0)),
-        (
-            "creases alone",
-            ComicStyle::new().with(Outlines {
-                silhouettes: None,
-                objects: None,
-                width_fade: 0.5,
-                ..along_cracks()
-            }),
-        ),
-        (
-            "object edges alone",
-            ComicStyle::new().with(Outlines {
-                silhouettes: None,
-                creases: None,
-                ..along_cracks()
-            }),
-        ),
-    ]
-}
-
-fn check(styles: &[(&str, ComicStyle)]) {
-    let mut apps = [false, true].map(studio);
+fn check(styles: &[Named]) {
+    let [mut with, mut without] = [false, true].map(studio);
     // Both: sketches change with the clock.
-    let [plain, _] = apps.each_mut().map(|app| app.shoot(None));
-    let [mut with, mut without] = apps;
-    for (name, style) in styles {
-        let wanted = with.shoot(Some(style));
-        let picture = without.shoot(Some(style));
-        assert!(is_by_fragments(&without), "{name}");
-        assert_same(name, &plain, &wanted, &picture);
+    let plain = with.shoot(None);
+    without.shoot(None);
+    for named in styles {
+        assert_same(&mut with, &mut without, &plain, named);
     }
 }
 
 #[test]
 fn lines_without_compute_passes_are_the_same() {
-    check(&styles());
+    check(&[
+        ("outlines", outlines(2.0)),
+        ("wider outlines", outlines(16.0)),
+        ("sketch", outlines(1.5).with(Sketch::default())),
+        ("contours", ComicStyle::new().with(Contours::default())),
+    ]);
 }
 
 #[test]
 fn parts_of_lines_without_compute_passes_are_the_same() {
-    check(&more_styles());
-}
-
-/// Gives a camera a target of another size.
-fn resize(studio: &mut Studio, size: UVec2) {
-    studio.headless.resize(size, 1.0);
-    let target = studio.headless.render_target();
-    let world = studio.headless.app.world_mut();
-    world.entity_mut(studio.camera).insert(target);
+    let creases = Outlines {
+        silhouettes: None,
+        objects: None,
+        width_fade: 0.5,
+        ..along_cracks()
+    };
+    let object_edges = Outlines {
+        silhouettes: None,
+        creases: None,
+        ..along_cracks()
+    };
+    check(&[
+        ("creases alone", ComicStyle::new().with(creases)),
+        ("object edges alone", ComicStyle::new().with(object_edges)),
+    ]);
 }
 
 /// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by fragments.
@@ -138,16 +116,14 @@ fn lines_of_a_view_larger_than_a_buffer_are_the_same() {
     let mut without = with_limits(SIZE, Some(limits));
     without.shoot(Some(&outlines(2.0)));
     assert!(!is_by_fragments(&without), "the small view is not searched");
-    resize(&mut without, large);
+    without.headless.resize(large, 1.0);
+    let target = without.headless.render_target();
+    let world = without.headless.app.world_mut();
+    world.entity_mut(without.camera).insert(target);
     let mut with = with_limits(large, None);
     let plain = with.shoot(None);
-    for width in [2.0, 16.0] {
-        let (name, style) = (format!("width {width}"), outlines(width));
-        let wanted = with.shoot(Some(&style));
-        let picture = without.shoot(Some(&style));
-        assert!(is_by_fragments(&without), "{name}");
-        assert!(!is_by_fragments(&with), "{name}");
-        assert_same(&name, &plain, &wanted, &picture);
+    for (name, width) in [("2 px", 2.0), ("16 px", 16.0)] {
+        assert_same(&mut with, &mut without, &plain, &(name, outlines(width)));
     }
 }
 
@@ -159,21 +135,17 @@ fn lines_without_compute_passes_have_no_weight() {
         width: 8.0,
         ..along_cracks()
     };
-    let weighted = |factor| Outlines {
-        weight: LineWeight {
+    let wanted = without.shoot(Some(&ComicStyle::new().with(even)));
+    for factor in [0.0, 0.25, 2.0] {
+        let weight = LineWeight {
             outer: factor,
             inner: factor,
             crease: factor,
             object: factor,
             taper: 12.0,
             ..LineWeight::EVEN
-        },
-        ..even
-    };
-    let wanted = without.shoot(Some(&ComicStyle::new().with(even)));
-    for factor in [0.0, 0.25, 2.0] {
-        let style = ComicStyle::new().with(weighted(factor));
-        let picture = without.shoot(Some(&style));
-        assert!(picture == wanted, "{factor}");
+        };
+        let style = ComicStyle::new().with(Outlines { weight, ..even });
+        assert!(without.shoot(Some(&style)) == wanted, "{factor}");
     }
 }

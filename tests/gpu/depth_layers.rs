@@ -7,38 +7,46 @@ use crate::prelude::*;
 /// What the debug view shows of near, middle and far, in codes.
 const SHOWN: [[u8; 3]; 3] = [[203, 69, 39], [231, 203, 89], [48, 108, 188]];
 
+/// The tangent of half the field of view.
+const TAN: f32 = 0.414_213_57;
+
 /// Three cards one above the other, at these distances, before the sky.
 fn cards(small: &mut Small, distances: [f32; 3]) {
     small.clear();
     small.insert(Transform::IDENTITY);
     for (row, distance) in [1.0, 0.0, -1.0].into_iter().zip(distances) {
-        let height = 0.25 * distance;
+        let card = Rectangle::new(0.5 * distance, 0.25 * distance);
         let at = Transform::from_xyz(0.0, row * 0.27 * distance, -distance);
-        let material = StandardMaterial {
-            unlit: true,
-            ..default()
-        };
-        small.put(Rectangle::new(0.5 * distance, height), material, at);
+        small.put(card, unlit(Color::WHITE), at);
     }
+}
+
+/// The rows of pixels through the middles of the cards.
+fn rows(picture: &image::RgbaImage) -> [u32; 3] {
+    let height = picture.height() as f32;
+    [1.0, 0.0, -1.0].map(|row: f32| (height * (0.5 - row * 0.27 / (2.0 * TAN))) as u32)
+}
+
+fn code(picture: &image::RgbaImage, x: u32, y: u32) -> [u8; 3] {
+    let [r, g, b, _] = picture.get_pixel(x, y).0;
+    [r, g, b]
+}
+
+fn is_close(a: &[u8; 3], b: &[u8; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1)
 }
 
 /// The codes at the middles of the cards, and in a corner.
 fn seen(small: &mut Small) -> [[u8; 3]; 4] {
     let picture = small.settle().picture();
-    let [x, h] = [picture.width() / 2, picture.height()];
-    let at = |x: u32, y: u32| {
-        let [r, g, b, _] = picture.get_pixel(x, y).0;
-        [r, g, b]
-    };
-    let row = |row: f32| (h as f32 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57))) as u32;
-    [at(x, row(1.0)), at(x, row(0.0)), at(x, row(-1.0)), at(2, 2)]
+    let [near, middle, far] = rows(&picture).map(|y| code(&picture, picture.width() / 2, y));
+    [near, middle, far, code(&picture, 2, 2)]
 }
 
 fn assert_three_layers(found: [[u8; 3]; 4], what: &str) {
     let wanted = [SHOWN[0], SHOWN[1], SHOWN[2], SHOWN[2]];
-    for (found, wanted) in found.iter().zip(wanted) {
-        let apart = found.iter().zip(wanted).map(|(a, b)| a.abs_diff(b));
-        assert!(apart.max() <= Some(1), "{what}: {found:?} for {wanted:?}");
+    for (found, wanted) in found.iter().zip(&wanted) {
+        assert!(is_close(found, wanted), "{what}: {found:?} for {wanted:?}");
     }
 }
 
@@ -88,7 +96,7 @@ fn an_orthographic_view_has_three_layers() {
         DebugView::Effect("depth_layers"),
         Projection::Orthographic(OrthographicProjection {
             scaling_mode: ScalingMode::FixedVertical {
-                viewport_height: 2.0 * 2.0 * 0.414_213_57,
+                viewport_height: 2.0 * 2.0 * TAN,
             },
             near: 0.0,
             far: 1000.0,
@@ -97,9 +105,8 @@ fn an_orthographic_view_has_three_layers() {
     ));
     let world = small.world();
     let mut cards = world.query_filtered::<&mut Transform, With<Mesh3d>>();
-    let mut z = [-10.0, -14.0, -40.0].into_iter();
-    for mut card in cards.iter_mut(world) {
-        card.translation.z = z.next().expect("three cards");
+    for (mut card, z) in cards.iter_mut(world).zip([-10.0, -14.0, -40.0]) {
+        card.translation.z = z;
     }
     let layers = DepthLayers {
         softness: 0.0,
@@ -109,42 +116,39 @@ fn an_orthographic_view_has_three_layers() {
     assert_three_layers(seen(&mut small), "orthographic");
 }
 
+/// What the debug view shows of cards with the fixed borders, or borders that are found.
+fn seen_with_borders(
+    distances: [f32; 3],
+    borders: LayerBorders,
+    [foreground_end, background_start]: [f32; 2],
+) -> [[u8; 3]; 4] {
+    let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
+    small.insert(DebugView::Effect("depth_layers"));
+    cards(&mut small, distances);
+    let layers = DepthLayers {
+        borders,
+        softness: 0.0,
+        foreground_end,
+        background_start,
+        ..default()
+    };
+    small.style(&with_map(ComicStyle::new().with(layers), hundred()));
+    seen(&mut small)
+}
+
 /// Fixed borders are where they say, and the near end is never behind the start of the far
 /// layer.
 #[test]
 fn fixed_borders_are_in_the_depth_map() {
-    let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
-    small.insert(DebugView::Effect("depth_layers"));
-    cards(&mut small, [10.0, 30.0, 90.0]);
-    let layers = |near_end, far_start| DepthLayers {
-        borders: LayerBorders::Fixed,
-        softness: 0.0,
-        foreground_end: near_end,
-        background_start: far_start,
-        ..default()
-    };
-    let map = DepthMap {
-        mapping: DepthMapping::Fixed {
-            from: 1.0,
-            to: 101.0,
-        },
-        ..default()
-    };
-    let mut seen_with = |near_end, far_start| {
-        small.style(&with_map(
-            ComicStyle::new().with(layers(near_end, far_start)),
-            map,
-        ));
-        seen(&mut small)
-    };
     // The cards are at 0.09, 0.29 and 0.89.
-    assert_three_layers(seen_with(0.2, 0.5), "between the cards");
-    let found = seen_with(0.95, 0.5);
+    let seen_with = |ends| seen_with_borders([10.0, 30.0, 90.0], LayerBorders::Fixed, ends);
+    assert_three_layers(seen_with([0.2, 0.5]), "between the cards");
+    let found = seen_with([0.95, 0.5]);
     assert!(
         found[..3].iter().all(|c| *c == found[0]),
         "{found:?} are all near"
     );
-    let found = seen_with(0.05, 0.06);
+    let found = seen_with([0.05, 0.06]);
     assert!(
         found[..3].iter().all(|c| *c == found[3]),
         "{found:?} are all far"
@@ -154,28 +158,10 @@ fn fixed_borders_are_in_the_depth_map() {
 /// A flat wall cannot be divided: the fixed borders apply.
 #[test]
 fn a_view_of_one_depth_has_the_fixed_borders() {
-    let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
-    small.insert(DebugView::Effect("depth_layers"));
-    cards(&mut small, [10.0, 10.0, 10.0]);
-    let map = DepthMap {
-        mapping: DepthMapping::Fixed {
-            from: 1.0,
-            to: 101.0,
-        },
-        ..default()
-    };
-    let layers = DepthLayers {
-        foreground_end: 0.05,
-        background_start: 0.5,
-        softness: 0.0,
-        ..default()
-    };
-    small.style(&with_map(ComicStyle::new().with(layers), map));
-    let found = seen(&mut small);
-    for card in &found[..3] {
-        let apart = card.iter().zip(SHOWN[1]).map(|(a, b)| a.abs_diff(b));
-        assert!(apart.max() <= Some(1), "{found:?}");
-    }
+    let borders = DepthLayers::default().borders;
+    let found = seen_with_borders([10.0; 3], borders, [0.05, 0.5]);
+    let is_middle = |card: &[u8; 3]| is_close(card, &SHOWN[1]);
+    assert!(found[..3].iter().all(is_middle), "{found:?}");
 }
 
 /// The game and the panel read where the borders are.
@@ -232,25 +218,13 @@ fn at_a_quarter(by: Granularity) -> ComicStyle {
 /// The layers that the pixels before the sky are in: near, middle.
 fn layers_before_the_sky(small: &mut Small) -> [bool; 2] {
     let picture = small.picture();
-    let is = |p: &image::Rgba<u8>, k: usize| {
-        let apart = p.0.iter().zip(SHOWN[k]).map(|(a, b)| a.abs_diff(b));
-        apart.max() <= Some(1)
-    };
-    let has = |k| picture.pixels().any(|p| is(p, k));
-    // Near 0, middle 1, far a blank.
-    let rows = picture.rows().map(|row| {
-        let letter = |p| match (0..3).find(|k| is(p, *k)) {
-            Some(2) => ' ',
-            Some(0) => '0',
-            Some(1) => '1',
-            _ => '?',
-        };
-        row.map(letter).collect::<String>() + "\n"
-    });
-    let drawn: String = rows.filter(|row| !row.trim().is_empty()).collect();
-    println!("{drawn}");
-    assert!(!drawn.contains('?'), "a pixel is between layers");
-    [has(0), has(1)]
+    let mut has = [false; 3];
+    for (x, y, _) in picture.enumerate_pixels() {
+        let found = code(&picture, x, y);
+        let layer = (0..3).find(|k| is_close(&found, &SHOWN[*k]));
+        has[layer.unwrap_or_else(|| panic!("{found:?} at ({x}, {y}) is between layers"))] = true;
+    }
+    [has[0], has[1]]
 }
 
 /// A long box below the eye, whose middle is this far away, seen with its top.
@@ -331,210 +305,127 @@ fn objects_have_layers_in_other_views_too() {
         small.style(&at_a_quarter(Granularity::Object));
         small.settle();
         let picture = small.picture();
-        let close = |p: &&image::Rgba<u8>, k: usize| {
-            p.0.iter().zip(SHOWN[k]).all(|(a, b)| a.abs_diff(b) <= 1)
+        let places = picture.enumerate_pixels();
+        let found: Vec<_> = places.map(|(x, y, _)| code(&picture, x, y)).collect();
+        let count = |k: usize| {
+            found
+                .iter()
+                .filter(|code| is_close(code, &SHOWN[k]))
+                .count()
         };
-        let count = |k| picture.pixels().filter(|p| close(p, k)).count();
+        let [near, middle] = [count(0), count(1)];
         assert!(
-            count(1) > 50 && count(0) == 0,
-            "{msaa:?}, {origin}: {}, {}",
-            count(0),
-            count(1)
+            middle > 50 && near == 0,
+            "{msaa:?}, {origin}: {near}, {middle}"
         );
     }
 }
 
-/// Size of the pictures with lines.
-const LINED: UVec2 = UVec2::new(64, 64);
-
-/// Lines on white cards, black: near, in the middle, far.
-fn line_widths(small: &mut Small, layers: DepthLayers, map: DepthMap) -> [f64; 3] {
+/// The picture of white cards with black lines.
+fn lined(small: &mut Small, layers: DepthLayers, flip: bool) -> image::RgbaImage {
     let outlines = Outlines {
         width: 4.0,
         creases: None,
         objects: None,
         ..along_cracks()
     };
-    small.style(&with_map(
-        ComicStyle::new().with(outlines).with(layers),
-        map,
-    ));
-    small.settle();
-    let picture = small.picture();
-    let half = picture.width() / 2;
-    [1.0, 0.0, -1.0].map(|row: f32| {
-        let y = picture.height() as f32 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57));
-        let ink = |x: u32| {
-            let code = f64::from(picture.get_pixel(x, y as u32).0[1]) / 255.0;
-            1.0 - color::srgb_decode_one(code)
-        };
-        // Across the left edge of the card.
-        (0..half).map(ink).sum()
+    let style = ComicStyle::new().with(outlines).with(layers);
+    let map = DepthMap { flip, ..hundred() };
+    small.style(&with_map(style, map));
+    small.settle().picture()
+}
+
+/// The width of the lines across the left edges of the cards.
+fn line_widths(picture: &image::RgbaImage) -> [f64; 3] {
+    let ink = |x, y| 1.0 - color::srgb_decode_one(f64::from(picture.get_pixel(x, y).0[1]) / 255.0);
+    rows(picture).map(|y| (0..picture.width() / 2).map(|x| ink(x, y)).sum())
+}
+
+/// How many pixels across the left edges of the cards have the colours wanted.
+fn colored(picture: &image::RgbaImage, wanted: [[u8; 3]; 3]) -> [usize; 3] {
+    let rows = rows(picture);
+    std::array::from_fn(|k| {
+        let codes = (0..picture.width() / 2).map(|x| code(picture, x, rows[k]));
+        codes.filter(|code| is_close(code, &wanted[k])).count()
     })
 }
 
 /// What is in a layer, and how the layers are divided.
 type Division = (Granularity, LayerBorders);
 
-/// Every two of the sample count, the unit and the borders together.
-const PAIRS: [(Msaa, &[Division]); 2] = [
-    (
-        Msaa::Off,
-        &[
-            (Granularity::Object, LayerBorders::Auto),
-            (Granularity::Pixel, LayerBorders::Fixed),
-        ],
-    ),
-    (
-        Msaa::Sample4,
-        &[
-            (Granularity::Object, LayerBorders::Fixed),
-            (Granularity::Pixel, LayerBorders::Auto),
-        ],
-    ),
+/// With [`CROSSED`], every two of the sample count, the unit and the borders together.
+const PAIRED: [Division; 2] = [
+    (Granularity::Object, LayerBorders::Auto),
+    (Granularity::Pixel, LayerBorders::Fixed),
 ];
 
-/// All three together.
-const ALL: [(Msaa, &[Division]); 2] = {
-    const EVERY: [Division; 4] = [
-        (Granularity::Object, LayerBorders::Auto),
-        (Granularity::Object, LayerBorders::Fixed),
-        (Granularity::Pixel, LayerBorders::Auto),
-        (Granularity::Pixel, LayerBorders::Fixed),
-    ];
-    [(Msaa::Off, &EVERY), (Msaa::Sample4, &EVERY)]
-};
+const CROSSED: [Division; 2] = [
+    (Granularity::Object, LayerBorders::Fixed),
+    (Granularity::Pixel, LayerBorders::Auto),
+];
 
 #[test]
-fn lines_have_the_width_and_opacity_of_their_layer() {
-    assert_width_and_opacity(PAIRS);
+fn lines_have_the_width_opacity_and_colour_of_their_layer() {
+    assert_lines_of_layers(Msaa::Off, &PAIRED);
+    assert_lines_of_layers(Msaa::Sample4, &CROSSED);
 }
 
 #[test]
 #[ignore = "long: every division of layers at every sample count"]
-fn lines_have_the_width_and_opacity_of_every_kind_of_layer() {
-    assert_width_and_opacity(ALL);
+fn lines_have_the_width_opacity_and_colour_of_every_kind_of_layer() {
+    assert_lines_of_layers(Msaa::Off, &CROSSED);
+    assert_lines_of_layers(Msaa::Sample4, &PAIRED);
 }
 
-fn assert_width_and_opacity(cases: [(Msaa, &[Division]); 2]) {
-    let mut small = Small::new(LINED, Msaa::Off);
-    for (msaa, divisions) in cases {
-        small.restart(msaa);
-        small.insert(Camera {
-            clear_color: Color::WHITE.into(),
-            ..default()
-        });
-        cards(&mut small, [10.0, 30.0, 90.0]);
-        let mut layers = DepthLayers::PLAIN;
-        let even = line_widths(&mut small, layers, hundred());
-        for width in even {
-            assert!(
-                (width - 4.0).abs() < 0.05,
-                "{msaa:?}: {even:?} of even lines"
-            );
-        }
-        layers.middle.line_width = 0.5;
-        layers.background.line_opacity = 0.25;
-        for &(by, borders) in divisions {
-            let layers = DepthLayers {
-                granularity: by,
-                borders,
-                foreground_end: 0.2,
-                background_start: 0.5,
-                ..layers
-            };
-            for flip in [false, true] {
-                let map = DepthMap { flip, ..hundred() };
-                let mut found = line_widths(&mut small, layers, map);
-                if flip {
-                    found.reverse();
-                }
-                let apart = [4.0, 2.0, 1.0].into_iter().zip(found);
-                // Opacity is stored in eight bits, in draws of a byte of ink.
-                let worst = apart.map(|(a, b)| f64::abs(a - b)).fold(0.0, f64::max);
-                assert!(
-                    worst < 0.06,
-                    "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?}"
-                );
-            }
-        }
-        assert_eq!(small.errors(), 0);
-    }
-}
-
-/// A line has the colour of the layer of the card in front, on both sides of its edge.
-#[test]
-fn lines_have_the_colour_of_their_layer() {
-    assert_colour(PAIRS);
-}
-
-#[test]
-#[ignore = "long: every division of layers at every sample count"]
-fn lines_have_the_colour_of_every_kind_of_layer() {
-    assert_colour(ALL);
-}
-
-fn assert_colour(cases: [(Msaa, &[Division]); 2]) {
-    let mut small = Small::new(LINED, Msaa::Off);
-    for (msaa, divisions) in cases {
-        small.restart(msaa);
-        small.insert(Camera {
-            clear_color: Color::WHITE.into(),
-            ..default()
-        });
-        cards(&mut small, [10.0, 30.0, 90.0]);
-        let mut layers = DepthLayers {
-            foreground_end: 0.2,
-            background_start: 0.5,
-            ..DepthLayers::PLAIN
+fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
+    let mut small = Small::new(UVec2::new(64, 64), msaa);
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
+    cards(&mut small, [10.0, 30.0, 90.0]);
+    let even = line_widths(&lined(&mut small, DepthLayers::PLAIN, false));
+    assert!(
+        even.iter().all(|width| (width - 4.0).abs() < 0.05),
+        "{msaa:?}: {even:?} of even lines"
+    );
+    let mut weighted = DepthLayers {
+        foreground_end: 0.2,
+        background_start: 0.5,
+        ..DepthLayers::PLAIN
+    };
+    let mut tinted = weighted;
+    weighted.middle.line_width = 0.5;
+    weighted.background.line_opacity = 0.25;
+    tinted.foreground.line_color = Color::srgb(1.0, 0.0, 0.0);
+    tinted.foreground.line_color_amount = 1.0;
+    // Half of black lines: 0.5 in linear light.
+    tinted.background.line_color = Color::srgb(0.0, 0.0, 1.0);
+    tinted.background.line_color_amount = 0.5;
+    let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
+    for (&(granularity, borders), flip) in divisions.iter().flat_map(|d| [(d, false), (d, true)]) {
+        let what = format!("{msaa:?}, {granularity:?}, {borders:?}, {flip}");
+        let divided = |layers: DepthLayers| DepthLayers {
+            granularity,
+            borders,
+            ..layers
         };
-        layers.foreground.line_color = Color::srgb(1.0, 0.0, 0.0);
-        layers.foreground.line_color_amount = 1.0;
-        // Half of black lines: 0.5 in linear light.
-        layers.background.line_color = Color::srgb(0.0, 0.0, 1.0);
-        layers.background.line_color_amount = 0.5;
-        let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
-        let wanted = [[255, 0, 0], [0, 0, 0], [0, 0, half]];
-        for &(by, borders) in divisions {
-            for flip in [false, true] {
-                let mut wanted = wanted;
-                if flip {
-                    wanted.reverse();
-                }
-                let layers = DepthLayers {
-                    granularity: by,
-                    borders,
-                    ..layers
-                };
-                let map = DepthMap { flip, ..hundred() };
-                line_widths(&mut small, layers, map);
-                let found = line_colors(&small.picture());
-                for (found, wanted) in found.iter().zip(wanted) {
-                    let is_close =
-                        |code: &[u8; 3]| code.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
-                    // A line of 4 pixels covers at least 3 of a row.
-                    let full = found.iter().filter(|code| is_close(code)).count();
-                    assert!(
-                        full >= 3,
-                        "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?} for {wanted:?}"
-                    );
-                }
-            }
+        let mut widths = [4.0, 2.0, 1.0];
+        let mut colors = [[255, 0, 0], [0, 0, 0], [0, 0, half]];
+        if flip {
+            widths.reverse();
+            colors.reverse();
         }
-        assert_eq!(small.errors(), 0);
+        let found = line_widths(&lined(&mut small, divided(weighted), flip));
+        // Opacity is stored in eight bits, in draws of a byte of ink.
+        let is_right = |k: usize| (found[k] - widths[k]).abs() < 0.06;
+        assert!((0..3).all(is_right), "{what}: {found:?}, not {widths:?}");
+        // A line has the colour of the layer of the card in front, on both sides of its edge:
+        // 4 pixels cover at least 3 of a row.
+        let counts = colored(&lined(&mut small, divided(tinted), flip), colors);
+        assert!(counts.iter().all(|n| *n >= 3), "{what}: {counts:?}");
     }
-}
-
-/// The codes of the pixels across the left edge of every card that are not white.
-fn line_colors(picture: &image::RgbaImage) -> [Vec<[u8; 3]>; 3] {
-    [1.0, 0.0, -1.0].map(|row: f32| {
-        let y = picture.height() as f32 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57));
-        let codes = (0..picture.width() / 2).map(|x| {
-            let [r, g, b, _] = picture.get_pixel(x, y as u32).0;
-            [r, g, b]
-        });
-        codes.filter(|code| *code != [255; 3]).collect()
-    })
+    assert_eq!(small.errors(), 0);
 }
 
 /// A layer without hatching and dots looks as if the effects were not there; one with all of them
@@ -575,8 +466,7 @@ fn hatching_and_dots_are_as_strong_as_in_their_layer() {
         small.settle();
         let picture = small.picture();
         // The spread of codes in a square in the middle of each card.
-        let spread = [1.0, 0.0, -1.0].map(|row: f32| {
-            let y = (128.0 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57))) as u32;
+        let spread = rows(&picture).map(|y| {
             let codes = (0..400).map(|k| picture.get_pixel(54 + k % 20, y - 10 + k / 20).0[1]);
             let (low, high) = codes.fold((255, 0), |(low, high), c| (c.min(low), c.max(high)));
             high - low

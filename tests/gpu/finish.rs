@@ -1,5 +1,6 @@
 //! `StyleWeight`, `SplitView`, debug views and the histogram, in pictures.
 
+use bevy_comics::depth::DepthBin;
 use bevy_comics_testkit::reference::color;
 use image::RgbaImage;
 
@@ -39,26 +40,16 @@ fn a_weight_mixes_and_none_costs_nothing() {
     for (x, y, pixel) in half.enumerate_pixels() {
         let (a, b) = (linear(&none, x, y), linear(&full, x, y));
         let want = color::srgb_encode(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
-        for i in 0..3 {
-            let apart = (f64::from(pixel[i]) - want[i] * 255.0).abs();
-            // Both ends and the mix are rounded to 8-bit codes.
-            assert!(apart <= 2.0, "{x}, {y}: {pixel:?}, {want:?}");
-        }
+        // Both ends and the mix are rounded to 8-bit codes.
+        let is_right = |i: usize| (f64::from(pixel[i]) - want[i] * 255.0).abs() <= 2.0;
+        assert!((0..3).all(is_right), "{x}, {y}: {pixel:?}, {want:?}");
         changed += u32::from(none.get_pixel(x, y) != pixel);
     }
     assert!(changed > 500, "the style does something: {changed}");
 
-    // The original itself.
-    let world = small.headless.app.world_mut();
-    let camera = small.camera;
-    world
-        .entity_mut(camera)
-        .remove::<(Desaturation, Contours, StyleWeight)>();
-    assert_eq!(
-        shoot(&mut small),
-        none,
-        "nothing of the style is the original"
-    );
+    let mut camera = small.camera_mut();
+    camera.remove::<(Desaturation, Contours, StyleWeight)>();
+    assert_eq!(shoot(&mut small), none, "none is the original");
 }
 
 #[test]
@@ -146,13 +137,10 @@ fn assert_views_of_the_scene(msaa: Msaa) {
             "{view:?} is mostly paper"
         );
     }
-    #[cfg(feature = "objects")]
-    {
-        let ids = show(&mut small, DebugView::ObjectIds);
-        assert!(small.ran(ComicsStage::ObjectIds));
-        assert!(codes(&ids).len() >= 4, "objects have colours of their own");
-        assert!(codes(&ids).contains(&[0; 3]), "the sky is no object");
-    }
+    let ids = show(&mut small, DebugView::ObjectIds);
+    assert!(small.ran(ComicsStage::ObjectIds));
+    assert!(codes(&ids).len() >= 4, "objects have colours of their own");
+    assert!(codes(&ids).contains(&[0; 3]), "the sky is no object");
 }
 
 fn assert_views_of_effects(msaa: Msaa) {
@@ -181,6 +169,12 @@ fn assert_views_of_effects(msaa: Msaa) {
     }
 }
 
+fn histogram(small: &mut Small) -> DepthHistogram {
+    small.settle();
+    let histogram = small.camera_mut().get::<DepthHistogram>().cloned();
+    histogram.expect("asked for")
+}
+
 #[test]
 fn the_histogram_counts_every_depth_once() {
     let mut small = Small::new(size(), Msaa::Off);
@@ -190,16 +184,11 @@ fn the_histogram_counts_every_depth_once() {
         DebugView::DepthMap,
     ));
     let map = shoot(&mut small);
-    small.settle();
-    let world = small.headless.app.world();
-    let histogram = world
-        .get::<DepthHistogram>(small.camera)
-        .expect("asked for");
-    let (near, far) = small
-        .range()
-        .and_then(VisibleDepthRange::distances)
-        .expect("geometry");
-    let counted: u32 = histogram.bins.iter().map(|bin| bin.count).sum();
+    let found = histogram(&mut small);
+    let range = small.range().and_then(VisibleDepthRange::distances);
+    let (near, far) = range.expect("geometry");
+    let count = |found: &DepthHistogram| found.bins.iter().map(|bin| bin.count).sum::<u32>();
+    let counted = count(&found);
     let sky = map.pixels().filter(|p| p[0] == 255).count() as u32;
     let all = size().x * size().y;
     // The sky and the farthest geometry are white.
@@ -207,14 +196,13 @@ fn the_histogram_counts_every_depth_once() {
         counted >= all - sky && counted < all,
         "{counted} of {all}, {sky} white"
     );
-    let first = histogram.bins.first().expect("bins");
-    let last = histogram.bins.last().expect("bins");
-    assert!(first.near <= near && near <= first.far, "{first:?}, {near}");
-    assert!(last.near <= far && far <= last.far, "{last:?}, {far}");
-    for pair in histogram.bins.windows(2) {
-        assert_eq!(pair[0].far, pair[1].near, "no gaps");
+    for (bin, end) in [(found.bins.first(), near), (found.bins.last(), far)] {
+        let bin = bin.expect("bins");
+        assert!(bin.near <= end && end <= bin.far, "{bin:?}, {end}");
     }
-    let drawn = histogram.drawn.expect("a range is drawn with");
+    let gapless = |pair: &[DepthBin]| pair[0].far == pair[1].near;
+    assert!(found.bins.windows(2).all(gapless), "{found:?}");
+    let drawn = found.drawn.expect("a range is drawn with");
     assert!(
         (drawn.0 - near).abs() < 1e-3 * near && (drawn.1 - far).abs() < 1e-3 * far,
         "{drawn:?}"
@@ -225,18 +213,9 @@ fn the_histogram_counts_every_depth_once() {
         smoothing: None,
         ..default()
     });
-    small.settle();
-    let world = small.headless.app.world();
-    let again = world
-        .get::<DepthHistogram>(small.camera)
-        .expect("asked for");
-    assert_eq!(again.bins.iter().map(|bin| bin.count).sum::<u32>(), counted);
+    assert_eq!(count(&histogram(&mut small)), counted);
     small.clear();
-    small.settle();
-    let world = small.headless.app.world();
-    let empty = world
-        .get::<DepthHistogram>(small.camera)
-        .expect("asked for");
+    let empty = histogram(&mut small);
     assert!(empty.bins.is_empty() && empty.drawn.is_none(), "{empty:?}");
     assert_eq!(small.errors(), 0);
 }
@@ -251,15 +230,13 @@ fn a_sketch_fades_in() {
         rate: 0.0,
         ..default()
     };
-    for lines in [
-        None,
-        Some(Outlines {
-            objects: None,
-            ..default()
-        }),
-    ] {
-        let style =
-            |sketch: Option<Sketch>| with_option(with_option(ComicStyle::default(), lines), sketch);
+    let outlines = Outlines {
+        objects: None,
+        ..default()
+    };
+    for lines in [None, Some(outlines)] {
+        let lined = with_option(ComicStyle::default(), lines);
+        let style = |sketch| with_option(lined.clone(), sketch);
         small.style(&style(None));
         let before = shoot(&mut small);
         small.style(&style(Some(sketch(0.0))));

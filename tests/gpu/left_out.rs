@@ -9,14 +9,9 @@ fn small() -> Small {
 /// The stages that ran, and the reason for each that did not.
 fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, SkipReason)>) {
     let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
-    let stages = &diagnostics
-        .cameras
-        .get(&small.camera)
-        .expect("listed")
-        .stages;
-    let mut ran = Vec::new();
-    let mut left = Vec::new();
-    for (stage, outcome) in stages {
+    let camera = diagnostics.cameras.get(&small.camera).expect("listed");
+    let (mut ran, mut left) = (Vec::new(), Vec::new());
+    for (stage, outcome) in &camera.stages {
         match outcome {
             StageOutcome::Skipped(reason) => left.push((*stage, *reason)),
             _ => ran.push(*stage),
@@ -26,40 +21,28 @@ fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, SkipReason)>) {
 }
 
 fn has_prepass(small: &Small) -> bool {
-    small
-        .headless
-        .app
-        .world()
-        .get::<DepthPrepass>(small.camera)
-        .is_some()
+    let world = small.headless.app.world();
+    world.get::<DepthPrepass>(small.camera).is_some()
 }
 
+fn remove<C: Component>(small: &mut Small) {
+    small.camera_mut().remove::<C>();
+    small.settle();
+}
+
+/// A `DepthMap` alone requests nothing either.
 #[test]
 fn a_camera_without_styles_costs_nothing() {
     let mut small = small();
-    small.settle();
-    assert!(
-        small
-            .headless
-            .app
-            .world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .is_empty()
-    );
-    assert!(!has_prepass(&small) && small.depth().is_none());
-    // A `DepthMap` alone requests nothing.
-    small.insert(DepthMap::default()).settle();
-    assert!(
-        small
-            .headless
-            .app
-            .world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .is_empty()
-    );
-    assert!(!has_prepass(&small));
+    for has_map in [false, true] {
+        if has_map {
+            small.insert(DepthMap::default());
+        }
+        small.settle();
+        let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+        assert!(diagnostics.cameras.is_empty());
+        assert!(!has_prepass(&small) && small.depth().is_none());
+    }
 }
 
 #[test]
@@ -71,19 +54,21 @@ fn one_atmosphere_for_all_reads_no_depth() {
         ran,
         [ComicsStage::of::<Colorization>(), ComicsStage::Stylize]
     );
-    assert!(left.contains(&(ComicsStage::DepthPrepass, SkipReason::NoDepthStyle)));
-    assert!(left.contains(&(ComicsStage::DepthRange, SkipReason::NoDepthStyle)));
-    assert!(left.contains(&(ComicsStage::of::<Contours>(), SkipReason::NotRequested)));
-    assert!(!has_prepass(&small));
-    small.insert(BlackFlats::default()).settle();
-    assert!(!has_prepass(&small), "flats of one threshold read no depth");
-    small
-        .insert(BlackFlats {
-            depth_weight: 0.5,
+    for skipped in [
+        (ComicsStage::DepthPrepass, SkipReason::NoDepthStyle),
+        (ComicsStage::DepthRange, SkipReason::NoDepthStyle),
+        (ComicsStage::of::<Contours>(), SkipReason::NotRequested),
+    ] {
+        assert!(left.contains(&skipped), "{skipped:?}");
+    }
+    // Nor do flats of one threshold.
+    for (depth_weight, reads_depth) in [(0.0, false), (0.5, true)] {
+        let flats = BlackFlats {
+            depth_weight,
             ..default()
-        })
-        .settle();
-    assert!(has_prepass(&small));
+        };
+        assert_eq!(has_prepass(small.insert(flats).settle()), reads_depth);
+    }
 }
 
 #[test]
@@ -101,15 +86,11 @@ fn a_fixed_range_has_no_reduction() {
             to: 12.0,
         },
     ] {
-        small
-            .insert((
-                DepthMap {
-                    mapping,
-                    ..default()
-                },
-                Contours::default(),
-            ))
-            .settle();
+        let map = DepthMap {
+            mapping,
+            ..default()
+        };
+        small.insert((map, Contours::default())).settle();
         let (ran, left) = stages(&small);
         assert_eq!(
             ran,
@@ -120,10 +101,8 @@ fn a_fixed_range_has_no_reduction() {
                 ComicsStage::Stylize
             ]
         );
-        assert!(
-            left.contains(&(ComicsStage::DepthRange, SkipReason::FixedRange)),
-            "{mapping:?}"
-        );
+        let skipped = (ComicsStage::DepthRange, SkipReason::FixedRange);
+        assert!(left.contains(&skipped), "{mapping:?}");
     }
     small.insert(DepthMap::default()).settle();
     assert!(small.ran(ComicsStage::DepthRange));
@@ -132,8 +111,7 @@ fn a_fixed_range_has_no_reduction() {
 #[test]
 fn what_changes_nothing_is_left_out() {
     let mut small = small();
-    small.settle();
-    let original = small.picture();
+    let original = small.settle().picture();
     small
         .insert((
             Desaturation {
@@ -187,9 +165,13 @@ fn outlines_run_what_they_need_and_no_more() {
             ComicsStage::Stylize,
         ]
     );
-    assert!(left.contains(&(ComicsStage::DepthRange, SkipReason::NoMapStyle)));
-    assert!(left.contains(&(ComicsStage::NormalPrepass, SkipReason::NoSuchLines)));
-    assert!(left.contains(&(ComicsStage::ObjectIds, SkipReason::NoSuchLines)));
+    for skipped in [
+        (ComicsStage::DepthRange, SkipReason::NoMapStyle),
+        (ComicsStage::NormalPrepass, SkipReason::NoSuchLines),
+        (ComicsStage::ObjectIds, SkipReason::NoSuchLines),
+    ] {
+        assert!(left.contains(&skipped), "{skipped:?}");
+    }
     small
         .insert(Outlines {
             width: 9.0,
@@ -204,30 +186,22 @@ fn outlines_run_what_they_need_and_no_more() {
     ] {
         assert!(small.ran(stage), "{stage:?}");
     }
-    let camera = small.camera;
-    small.world().entity_mut(camera).remove::<Outlines>();
-    small.settle();
+    remove::<Outlines>(&mut small);
     assert!(!has_prepass(&small));
     // Tone bands alone read no depth.
     small.insert(ToneBands::default()).settle();
     let (ran, _) = stages(&small);
     assert_eq!(ran, [ComicsStage::of::<ToneBands>(), ComicsStage::Stylize]);
     // A sketch with invisible lines leaves the picture unchanged.
-    let camera = small.camera;
-    small.world().entity_mut(camera).remove::<ToneBands>();
-    small.settle();
+    remove::<ToneBands>(&mut small);
     let original = small.picture();
-    small
-        .insert((
-            Sketch::default(),
-            Outlines {
-                silhouettes: None,
-                creases: None,
-                objects: None,
-                ..default()
-            },
-        ))
-        .settle();
+    let invisible = Outlines {
+        silhouettes: None,
+        creases: None,
+        objects: None,
+        ..default()
+    };
+    small.insert((Sketch::default(), invisible)).settle();
     assert_eq!(stages(&small).0, []);
     assert_eq!(small.picture(), original);
     assert_eq!(small.errors(), 0);
@@ -239,21 +213,14 @@ fn outlines_run_what_they_need_and_no_more() {
 fn a_sketch_draws_in_place_of_the_outlines() {
     let mut small = small();
     small.insert(Sketch::default()).settle();
-    for (own, reason) in [
-        (false, SkipReason::NotRequested),
-        (true, SkipReason::Replaced),
-    ] {
-        if own {
-            small.insert(Outlines::default()).settle();
-        }
+    for reason in [SkipReason::NotRequested, SkipReason::Replaced] {
         let (ran, left) = stages(&small);
         for stage in [ComicsStage::DrawLines, ComicsStage::of::<Sketch>()] {
-            assert!(ran.contains(&stage), "{stage:?}, {own}");
+            assert!(ran.contains(&stage), "{stage:?}, {reason:?}");
         }
-        assert!(
-            left.contains(&(ComicsStage::of::<Outlines>(), reason)),
-            "{own}: {left:?}"
-        );
+        let skipped = (ComicsStage::of::<Outlines>(), reason);
+        assert!(left.contains(&skipped), "{left:?}");
+        small.insert(Outlines::default()).settle();
     }
     assert_eq!(small.errors(), 0);
 }
@@ -261,8 +228,7 @@ fn a_sketch_draws_in_place_of_the_outlines() {
 #[test]
 fn the_game_can_ask_for_the_range_alone() {
     let mut small = small();
-    small.settle();
-    let original = small.picture();
+    let original = small.settle().picture();
     small.insert(VisibleDepthRange::default()).settle();
     let (ran, _) = stages(&small);
     assert_eq!(
@@ -274,10 +240,8 @@ fn the_game_can_ask_for_the_range_alone() {
         ]
     );
     assert_eq!(small.picture(), original);
-    let (near, far) = small
-        .range()
-        .and_then(VisibleDepthRange::distances)
-        .expect("a range");
+    let range = small.range().and_then(VisibleDepthRange::distances);
+    let (near, far) = range.expect("a range");
     // The camera is 6.6 units from the centre of a ground of 9 by 9.
     assert!(
         1.0 < near && near < 5.0 && 8.0 < far && far < 14.0,
@@ -288,27 +252,12 @@ fn the_game_can_ask_for_the_range_alone() {
 #[test]
 fn both_passes_have_time_spans_in_the_engines_diagnostics() {
     use bevy::{diagnostic::DiagnosticsStore, render::diagnostic::RenderDiagnosticsPlugin};
-    let mut headless = Headless::new(options(size()), (ComicsPlugin, RenderDiagnosticsPlugin));
-    let target = headless.render_target();
-    let camera = crate::small::camera(target, Msaa::Off);
-    headless
-        .app
-        .world_mut()
-        .spawn((camera, Contours::default()));
-    headless.step(20);
-    let store = headless.app.world().resource::<DiagnosticsStore>();
+    let mut small = Small::with_plugins(options(size()), Msaa::Off, RenderDiagnosticsPlugin);
+    small.insert(Contours::default());
+    small.headless.step(20);
+    let store = small.headless.app.world().resource::<DiagnosticsStore>();
     for pass in ["comics_depth_range", "comics_stylize"] {
         let measured = store.iter().any(|d| d.path().as_str().contains(pass));
         assert!(measured, "{pass} is not among the diagnostics");
     }
-}
-
-#[test]
-fn a_prepass_of_the_games_own_stays() {
-    let mut small = small();
-    small.insert((DepthPrepass, Contours::default())).settle();
-    let camera = small.camera;
-    small.world().entity_mut(camera).remove::<Contours>();
-    small.settle();
-    assert!(has_prepass(&small));
 }

@@ -68,7 +68,6 @@ fn lines_continue_by_logical_pixels() {
         }
         // The weak part is longer than that.
         let whole = length(&mut small, lines(32.0, 0.0)) - certain;
-        println!("scale {scale}: {certain} certain cracks, {whole} weak");
         assert!(whole > 8 * scale as usize, "scale {scale}: {whole}");
         assert_eq!(small.errors(), 0);
     }

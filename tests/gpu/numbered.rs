@@ -7,77 +7,69 @@ use crate::prelude::*;
 /// Shows the number and the red of the pixel to the left, and its own green.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default)]
-struct ShownNumbers {
+struct Numbers<const ORDER: usize> {
     scale: f32,
 }
 
+type ShownNumbers = Numbers<0>;
 /// The same after it.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default)]
-struct MoreNumbers {
-    scale: f32,
-}
+type MoreNumbers = Numbers<1>;
 
-macro_rules! numbered {
-    ($effect:ident, $name:literal) => {
-        impl Effect for $effect {
-            const NAME: &'static str = $name;
-            const STAGE: EffectStage = EffectStage::Color;
-            const SHADER: EffectShader = EffectShader {
-                path: concat!("test::", $name),
-                source: concat!(
-                    "#define_import_path test::",
-                    $name,
-                    "
-            #import bevy_comics::depth::view::inside_viewport
-            #import bevy_comics::effect::aux_scalar::load_aux_scalar
-            #import bevy_comics::effect::pixel::Pixel
-            struct ShownNumbers { scale: f32 }
-            fn ",
-                    $name,
-                    "_aux_scalar(s: ShownNumbers, p: Pixel) -> f32 {
-                return s.scale * (p.inside.x + 0.5 * p.inside.y);
-            }
-            fn ",
-                    $name,
-                    "(s: ShownNumbers, p: Pixel) -> Pixel {
-                var out = p;
-                let left = inside_viewport(vec2<i32>(p.position) - vec2(1, 0));
-                let found = load_aux_scalar(left);
-                out.color = vec3(found.number, found.color.r, p.color.g);
-                return out;
-            }"
-                ),
-                settings: Some("ShownNumbers"),
-            };
-            const AUX_SCALAR: bool = true;
-            type Uniform = Vec2;
-
-            fn sanitized(self) -> Self {
-                self
-            }
-
-            fn strength(&self) -> f32 {
-                1.0
-            }
-
-            fn faded(self, _: f32) -> Self {
-                self
-            }
-
-            fn needs(&self) -> Needs {
-                Needs::AUX_SCALAR
-            }
-
-            fn uniform(&self, _: &EffectContext) -> Vec2 {
-                Vec2::new(self.scale, 0.0)
-            }
+macro_rules! shader {
+    ($name:literal) => {
+        EffectShader {
+            path: concat!("test::", $name),
+            source: concat!(
+                "#define_import_path test::",
+                $name,
+                "
+                #import bevy_comics::depth::view::inside_viewport
+                #import bevy_comics::effect::aux_scalar::load_aux_scalar
+                #import bevy_comics::effect::pixel::Pixel
+                struct Numbers { scale: f32 }
+                fn ",
+                $name,
+                "_aux_scalar(s: Numbers, p: Pixel) -> f32 {
+                    return s.scale * (p.inside.x + 0.5 * p.inside.y);
+                }
+                fn ",
+                $name,
+                "(s: Numbers, p: Pixel) -> Pixel {
+                    var out = p;
+                    let left = inside_viewport(vec2<i32>(p.position) - vec2(1, 0));
+                    let found = load_aux_scalar(left);
+                    out.color = vec3(found.number, found.color.r, p.color.g);
+                    return out;
+                }"
+            ),
+            settings: Some("Numbers"),
         }
     };
 }
 
-numbered!(ShownNumbers, "shown_numbers");
-numbered!(MoreNumbers, "more_numbers");
+impl<const ORDER: usize> Effect for Numbers<ORDER> {
+    const NAME: &'static str = ["shown_numbers", "more_numbers"][ORDER];
+    const STAGE: EffectStage = EffectStage::Color;
+    const SHADER: EffectShader = [shader!("shown_numbers"), shader!("more_numbers")][ORDER];
+    const AUX_SCALAR: bool = true;
+    type Uniform = Vec2;
+
+    fn strength(&self) -> f32 {
+        1.0
+    }
+
+    fn faded(self, _: f32) -> Self {
+        self
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::AUX_SCALAR
+    }
+
+    fn uniform(&self, _: &EffectContext) -> Vec2 {
+        Vec2::new(self.scale, 0.0)
+    }
+}
 
 fn small() -> Small {
     let effects = (

@@ -1,19 +1,19 @@
 //! Percentiles of orthographic views: the bins against their reference, the percentiles
 //! against sorted depths.
 
-use bevy_comics_testkit::reference::histogram::Bins;
+use bevy_comics_testkit::reference::{histogram::Bins, smoothing::Smoothing};
 
 use crate::{
     prelude::*,
     range::{SHAPES, reduce_and_count},
-    smoothing::{Outliers, SMOOTH, frame, run},
+    smoothing::{Outliers, SMOOTH, frame, percentiles, run},
+    walls::wall,
 };
 
-const ORTHOGRAPHIC: bevy_comics_testkit::reference::smoothing::Smoothing =
-    bevy_comics_testkit::reference::smoothing::Smoothing {
-        offset: None,
-        ..SMOOTH
-    };
+const ORTHOGRAPHIC: Smoothing = Smoothing {
+    offset: None,
+    ..SMOOTH
+};
 
 /// Depths of a view: most of them between two distances, a fraction of them outliers at
 /// the ends of a wider range.
@@ -96,46 +96,24 @@ fn percentiles_are_those_of_the_sorted_depths() {
         for stretch in [1.0f32, 3.0, 20.0] {
             let by = 0.5 * (stretch - 1.0) * (main[0] - main[1]);
             let wide = [(main[0] + by).min(1.0), (main[1] - by).max(1e-6)];
-            let depths = table(&mut random, main, wide, 0.006);
-            let ends = extremes(&depths);
-            let bins = Bins::Window(ends.map(f64::from));
-            let (counts, total) = bins.count(depths.iter().copied());
-            let mut sorted = depths.clone();
+            let mut sorted = table(&mut random, main, wide, 0.006);
             sorted.sort_by(f32::total_cmp);
+            let ends = extremes(&sorted).map(f64::from);
             for fraction in [0.005f32, 0.02, 0.1] {
-                let outliers = Outliers {
-                    fraction,
-                    bins: &counts,
-                    total,
-                    window: ends,
-                };
-                let found = [frame(ends[0], ends[1], 0.0)];
-                let got = run(&ORTHOGRAPHIC, &found, Some(outliers))[0]
-                    .expect("geometry")
-                    .map(f32::from_bits);
-                let rank = (f64::from(fraction) * f64::from(total)) as usize;
-                let exact = [sorted[sorted.len() - 1 - rank], sorted[rank]];
-                let reference =
-                    bins.percentiles(&counts, total, f64::from(fraction), ends.map(f64::from));
-                let length = f64::from(ends[0]) - f64::from(ends[1]);
+                let bins = Bins::Window(ends);
+                let [got, reference] = percentiles(&ORTHOGRAPHIC, bins, fraction, &sorted);
+                let rank = (f64::from(fraction) * sorted.len() as f64) as usize;
+                let exact = [sorted[sorted.len() - 1 - rank], sorted[rank]].map(f64::from);
+                let length = ends[0] - ends[1];
+                // Three units in the last place of a depth.
+                let rounding = 3.0 * 2f64.powi(-24) * ends[0];
                 for end in 0..2 {
-                    let what = format!("{main:?}, {stretch} times, {fraction}, end {end}");
-                    // Three units in the last place of a depth.
-                    let rounding = 3.0 * 2f64.powi(-24) * f64::from(ends[0]);
-                    assert!(
-                        (f64::from(got[end]) - reference[end]).abs() <= rounding + 1e-6 * length,
-                        "{what}: {} for {}",
-                        got[end],
-                        reference[end]
-                    );
+                    let off = (got[end] - reference[end]).abs();
                     // A bin is 1/128 of the range or less.
-                    let apart = (f64::from(got[end]) - f64::from(exact[end])).abs();
+                    let apart = (got[end] - exact[end]).abs();
                     assert!(
-                        apart <= length / 128.0 + rounding,
-                        "{what}: {} is {} of the range from {}",
-                        got[end],
-                        apart / length,
-                        exact[end]
+                        off <= rounding + 1e-6 * length && apart <= length / 128.0 + rounding,
+                        "{main:?}, {stretch} times, {fraction}: {got:?} for {reference:?}, {exact:?}"
                     );
                 }
             }
@@ -179,17 +157,11 @@ fn a_window_of_another_view_gives_a_range_within_the_extremes() {
 /// A wall across an orthographic view from 0 to 1e5 units, at a distance of 20 and 24
 /// units, and a speck of 0.4 % of the picture close to the camera.
 fn walls() -> Small {
-    let size = UVec2::new(160, 100);
-    let mut small = Small::with(options(size), Msaa::Off);
+    let mut small = Small::new(UVec2::new(160, 100), Msaa::Off);
     small.clear();
-    for (x, width, distance) in [(-4.0, 8.0, 20.0), (4.0, 8.0, 24.0), (0.0, 0.8, 2.0)] {
-        let height = if width < 1.0 { 0.8 } else { 20.0 };
-        small.put(
-            Rectangle::new(width, height),
-            unlit(Color::WHITE),
-            Transform::from_xyz(x, 0.0, -distance),
-        );
-    }
+    wall(&mut small, [-8.0, -10.0], [0.0, 10.0], 20.0);
+    wall(&mut small, [0.0, -10.0], [8.0, 10.0], 24.0);
+    wall(&mut small, [-0.4; 2], [0.4; 2], 2.0);
     small.insert((
         Projection::Orthographic(OrthographicProjection {
             near: 0.0,
@@ -206,57 +178,49 @@ fn walls() -> Small {
     small
 }
 
-fn drawn(small: &Small) -> [f32; 2] {
+fn histogram(small: &Small) -> &DepthHistogram {
     let world = small.headless.app.world();
-    let histogram = world
-        .get::<DepthHistogram>(small.camera)
-        .expect("asked for");
-    let (near, far) = histogram.drawn.expect("a range");
-    [near, far]
+    let histogram = world.get::<DepthHistogram>(small.camera);
+    histogram.expect("asked for")
+}
+
+/// Fails unless the drawn range is that of the walls, seen from so much farther away.
+fn assert_drawn_with_the_walls(small: &Small, away: f32) {
+    let (near, far) = histogram(small).drawn.expect("a range");
+    // A step of raw depth is 0.006 units, a bin 0.8 % of the 22 units between the speck
+    // and the farther wall.
+    assert!(
+        (near - away - 20.0).abs() < 0.2 && (far - away - 24.0).abs() < 0.2,
+        "{near} to {far}, {away} away"
+    );
 }
 
 #[test]
 fn a_speck_does_not_stretch_an_orthographic_range() {
     let mut small = walls();
-    let map = DepthMap {
+    let map = |smoothing| DepthMap {
         smoothing: Some(RangeSmoothing {
             outliers: 0.02,
-            ..RangeSmoothing::OFF
+            ..smoothing
         }),
         ..default()
     };
-    let style = with_map(ComicStyle::default().with(Colorization::default()), map);
-    small.style(&style);
+    let style = ComicStyle::default().with(Colorization::default());
+    small.style(&with_map(style, map(RangeSmoothing::OFF)));
     small.settle();
-    // A step of raw depth is 0.006 units, a bin 0.8 % of the 22 units between the speck
-    // and the farther wall.
-    let [near, far] = drawn(&small);
-    assert!(
-        (near - 20.0).abs() < 0.2 && (far - 24.0).abs() < 0.2,
-        "{near} to {far}"
-    );
+    assert_drawn_with_the_walls(&small, 0.0);
 
     // With slow smoothing a new view starts with its percentiles, not with its extremes.
     let slow = RangeSmoothing {
-        outliers: 0.02,
         expand: 60.0,
         shrink: 60.0,
         ..RangeSmoothing::OFF
     };
-    small.insert(DepthMap {
-        smoothing: Some(slow),
-        ..default()
-    });
-    small.insert(Transform::from_xyz(0.0, 0.0, 1000.0));
+    small.insert((map(slow), Transform::from_xyz(0.0, 0.0, 1000.0)));
     let entity = small.camera;
-    small.world().commands().trigger(CameraCut { entity });
-    small.world().flush();
+    small.world().trigger(CameraCut { entity });
     small.settle();
-    let [near, far] = drawn(&small);
-    assert!(
-        (near - 1020.0).abs() < 0.2 && (far - 1024.0).abs() < 0.2,
-        "{near} to {far} after a cut"
-    );
+    assert_drawn_with_the_walls(&small, 1000.0);
     assert_eq!(small.errors(), 0);
 }
 
@@ -264,17 +228,11 @@ fn a_speck_does_not_stretch_an_orthographic_range() {
 fn the_histogram_of_an_orthographic_view_tells_its_depths() {
     let mut small = walls();
     small.settle();
-    let world = small.headless.app.world();
-    let histogram = world
-        .get::<DepthHistogram>(small.camera)
-        .expect("asked for");
-    let all: u32 = histogram.bins.iter().map(|bin| bin.count).sum();
+    let range = small.range().and_then(VisibleDepthRange::distances);
+    let (near, far) = range.expect("geometry");
+    let bins = &histogram(&small).bins;
+    let all: u32 = bins.iter().map(|bin| bin.count).sum();
     assert_eq!(all, 160 * 100);
-    let (near, far) = small
-        .range()
-        .and_then(VisibleDepthRange::distances)
-        .expect("geometry");
-    let bins = &histogram.bins;
     assert_eq!([bins[0].near, bins[bins.len() - 1].far], [near, far]);
     assert!(bins.windows(2).all(|pair| pair[0].far == pair[1].near));
     // What is counted is where the geometry is, within a bin.
@@ -285,9 +243,7 @@ fn the_histogram_of_an_orthographic_view_tells_its_depths() {
             .any(|d| bin.near - 0.01 <= *d && *d <= bin.far + 0.01);
         assert!(there, "{bin:?}");
     }
-    let at = |d: f32| -> u32 {
-        let near = |bin: &&bevy_comics::depth::DepthBin| bin.near - 0.5 < d && d < bin.far + 0.5;
-        bins.iter().filter(near).map(|bin| bin.count).sum()
-    };
-    assert_eq!(at(2.0), 8 * 8, "the speck, at ten pixels per unit");
+    let speck = bins.iter().filter(|bin| bin.near < 2.5 && 1.5 < bin.far);
+    let speck: u32 = speck.map(|bin| bin.count).sum();
+    assert_eq!(speck, 8 * 8, "at ten pixels per unit");
 }

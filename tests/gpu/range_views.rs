@@ -5,48 +5,48 @@ use bevy_comics_testkit::{headless, reference::range};
 
 use crate::{prelude::*, small::Reshaped};
 
-fn msaa_of(samples: u32) -> Msaa {
-    Msaa::from_samples(samples)
-}
-
-/// The range that the game reads against a scan of the depth texture.
-fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
+/// Fails unless the game reads the range of a scan of the depth texture.
+pub fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
     let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
     let [x, y, w, h] = rect.unwrap_or([0, 0, depth.width, depth.height]);
-    let scan = range::scan(
-        (y..y + h)
-            .flat_map(|y| (x..x + w).map(move |x| (x, y)))
-            .flat_map(|(x, y)| {
-                let depth = &depth;
-                (0..depth.samples).map(move |s| depth.at(x, y, s))
-            }),
-    );
-    match (small.range(), scan) {
-        (
-            Some(VisibleDepthRange::Visible {
-                raw_nearest,
-                raw_farthest,
-                ..
-            }),
-            Some(scan),
-        ) => {
-            assert_eq!(
-                [raw_nearest.to_bits(), raw_farthest.to_bits()],
-                scan,
-                "{what}"
-            );
-        }
-        (Some(VisibleDepthRange::Empty), None) => {}
-        (got, want) => panic!("{what}: {got:?} for {want:?}"),
-    }
+    let pixels = (y..y + h).flat_map(|y| (x..x + w).map(move |x| (x, y)));
+    let samples = |(x, y)| (0..depth.samples).map(move |s| (x, y, s));
+    let scan = range::scan(pixels.flat_map(samples).map(|(x, y, s)| depth.at(x, y, s)));
+    let found = match small.range() {
+        Some(VisibleDepthRange::Visible {
+            raw_nearest,
+            raw_farthest,
+            ..
+        }) => Some([raw_nearest.to_bits(), raw_farthest.to_bits()]),
+        Some(VisibleDepthRange::Empty) => None,
+        unknown => panic!("{what}: {unknown:?}"),
+    };
+    assert_eq!(found, scan, "{what}");
 }
 
+/// The range that the game reads, and the picture, which follows percentiles within the outermost bins: they
+/// are clamped to the extremes.
 #[test]
 fn every_method_reads_every_sample_of_a_rendered_view() {
     let samples = headless::adapter().expect("an adapter").samples;
     let mut small = Small::new(UVec2::new(71, 53), Msaa::Off);
     for samples in samples {
-        small.restart(msaa_of(samples));
+        small.restart(Msaa::from_samples(samples));
+        small.insert((Colorization::default(), VisibleDepthRange::default()));
+        let mut drawn = |map: DepthMap| {
+            small.insert(map).settle();
+            let what = format!("{:?}, {samples} samples", map.reduction);
+            assert!(small.ran(ComicsStage::DepthRange), "{what}");
+            assert_range_is_the_scan(&small, None, &what);
+            let smooths = small.ran(ComicsStage::RangeSmoothing);
+            assert_eq!(smooths, map.smoothing.is_some(), "{what}");
+            assert_eq!(small.errors(), 0, "{what}");
+            small.picture()
+        };
+        let plain = drawn(DepthMap {
+            smoothing: None,
+            ..default()
+        });
         for reduction in [
             ReductionMethod::Auto,
             ReductionMethod::BarrierFree,
@@ -54,22 +54,17 @@ fn every_method_reads_every_sample_of_a_rendered_view() {
             ReductionMethod::SharedMemory,
             ReductionMethod::PingPong,
         ] {
-            small
-                .insert((
-                    DepthMap {
-                        reduction,
-                        ..default()
-                    },
-                    VisibleDepthRange::default(),
-                ))
-                .settle();
-            assert!(
-                small.ran(ComicsStage::DepthRange),
-                "{reduction:?} did not run"
-            );
-            assert_range_is_the_scan(&small, None, &format!("{reduction:?}, {samples} samples"));
+            let smoothing = Some(RangeSmoothing {
+                outliers: 1e-7,
+                ..default()
+            });
+            let smoothed = drawn(DepthMap {
+                reduction,
+                smoothing,
+                ..default()
+            });
+            assert!(smoothed == plain, "{reduction:?}, {samples} samples");
         }
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -186,25 +181,16 @@ fn the_range_stays_inside_the_viewport() {
 #[test]
 fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);
-    small
-        .insert((
-            Contours::default(),
-            Desaturation::default(),
-            VisibleDepthRange::default(),
-        ))
-        .settle();
+    // Eight bits are always finite.
+    small.insert((Hdr, VisibleDepthRange::default()));
+    small.insert((Contours::default(), Desaturation::default()));
+    small.settle();
     assert!(matches!(
         small.range(),
         Some(VisibleDepthRange::Visible { .. })
     ));
-    let materials: Vec<_> = {
-        let world = small.world();
-        let mut query = world.query::<&MeshMaterial3d<StandardMaterial>>();
-        query.iter(world).map(|m| m.0.clone()).collect()
-    };
-    for material in materials {
-        let mut assets = small.world().resource_mut::<Assets<StandardMaterial>>();
-        let mut material = assets.get_mut(&material).expect("a material of the scene");
+    let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
+    for (_, material) in materials.iter_mut() {
         material.alpha_mode = AlphaMode::Blend;
     }
     small.settle();

@@ -98,22 +98,16 @@ fn the_rim_mixes_by_samples() {
 fn ink_is_drawn_over_it() {
     let mut small = Small::new(size(), Msaa::Off);
     let cube = orange_cube(&mut small);
-    let ink = [
+    let own = (NoStyle::default(), OutlineStyle::default());
+    small.world().entity_mut(cube).insert(own);
+    for style in [
         colors().with(Outlines::default()),
         colors().with(Contours::default()),
         colors().with(Sketch::default()),
-    ];
-    for style in ink {
-        small.world().entity_mut(cube).insert(NoStyle::default());
-        small
-            .world()
-            .entity_mut(cube)
-            .insert(OutlineStyle::default());
+    ] {
         let pixels = changes(&mut small, &style);
-        let dark = pixels
-            .iter()
-            .filter(|(change, own, _)| *own > 0 && *change > 0.2);
-        assert!(dark.count() > 20, "{style:?}");
+        let is_dark = |(change, own, _): &&(f32, usize, usize)| *own > 0 && *change > 0.2;
+        assert!(pixels.iter().filter(is_dark).count() > 20, "{style:?}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -124,25 +118,23 @@ fn ink_is_drawn_over_it() {
 fn descendants_inherit_it_where_asked() {
     let mut small = Small::new(size(), Msaa::Off);
     let child = orange_cube(&mut small);
-    let root = small
-        .world()
-        .spawn((Transform::default(), Visibility::default()))
-        .id();
-    small.world().entity_mut(root).add_child(child);
-    let own = |small: &mut Small| {
-        let pixels = changes(small, &colors());
+    let root = (Transform::default(), Visibility::default());
+    let root = small.world().spawn(root).add_child(child).id();
+    let mut kept_with = |root_style: Option<NoStyle>| {
+        let mut root = small.world().entity_mut(root);
+        match root_style {
+            Some(style) => root.insert(style),
+            None => root.remove::<NoStyle>(),
+        };
+        let pixels = changes(&mut small, &colors());
         pixels.iter().filter(|(change, ..)| *change == 0.0).count()
     };
-    let none = own(&mut small);
-    small
-        .world()
-        .entity_mut(root)
-        .insert(NoStyle { inherit: false });
-    assert_eq!(own(&mut small), none, "not inherited");
-    small.world().entity_mut(root).insert(NoStyle::default());
-    assert!(own(&mut small) > none + 200, "inherited");
-    small.world().entity_mut(root).remove::<NoStyle>();
-    assert_eq!(own(&mut small), none, "taken off");
+    let none = kept_with(None);
+    let own = NoStyle { inherit: false };
+    assert_eq!(kept_with(Some(own)), none, "not inherited");
+    let inherited = kept_with(Some(NoStyle::default()));
+    assert!(inherited > none + 200, "inherited");
+    assert_eq!(kept_with(None), none, "taken off");
 }
 
 /// Without such objects, and without colour effects, no ids are drawn for it.

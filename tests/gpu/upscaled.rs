@@ -12,7 +12,7 @@ use bevy::{
 use crate::{
     outlines::{look, put, removed},
     prelude::*,
-    walls::{towards_the_sky, unit_per_pixel},
+    walls::{towards_the_sky, unit_per_pixel, wall},
 };
 
 /// In the render world: the size of all main passes.
@@ -71,13 +71,10 @@ fn of<E: Effect>(effect: E) -> ComicStyle {
     ComicStyle::new().with(effect)
 }
 
-/// A rectangle in pixels from the top left corner: left, top, right, bottom.
-type Rectangle4 = [f32; 4];
-
-/// A small box in front of a large one, before the sky.
-const BOXES: [(Rectangle4, f32); 2] = [
-    ([50.3, 40.8, 190.7, 139.4], -60.0),
-    ([90.6, 60.2, 140.9, 110.55], -5.0),
+/// A small box in front of a large one, before the sky: left, top, right, bottom in pixels, and the distance.
+const BOXES: [([f32; 4], f32); 2] = [
+    ([50.3, 40.8, 190.7, 139.4], 60.0),
+    ([90.6, 60.2, 140.9, 110.55], 5.0),
 ];
 
 /// An orthographic view, one unit per pixel, of the boxes.
@@ -88,44 +85,32 @@ fn boxes() -> Small {
         far: 100.0,
         ..unit_per_pixel(size)
     }));
-    for ([left, top, right, bottom], z) in BOXES {
-        let middle = Vec3::new(
-            0.5 * (left + right) - 0.5 * WIDTH as f32,
-            0.5 * HEIGHT as f32 - 0.5 * (top + bottom),
-            z,
-        );
-        put(
-            &mut small,
-            Rectangle::new(right - left, bottom - top),
-            Color::WHITE,
-            Transform::from_translation(middle),
-        );
+    let half = Vec2::new(WIDTH as f32, HEIGHT as f32) * 0.5;
+    for ([left, top, right, bottom], distance) in BOXES {
+        let low = [left - half.x, half.y - bottom];
+        let high = [right - half.x, half.y - top];
+        wall(&mut small, low, high, distance);
     }
     small
 }
 
-/// Distance in pixels from a position to the sides of a rectangle; the larger of the
+/// Distance in pixels from a position to the nearest side of a box; the larger of the
 /// distances across and down if `square`.
-fn side_distance([left, top, right, bottom]: Rectangle4, at: Vec2, square: bool) -> f32 {
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let corners = corners.map(Vec2::from);
-    (0..4)
-        .map(|i| {
-            let (a, b) = (corners[i], corners[(i + 1) % 4]);
-            let (low, high) = (a.min(b), a.max(b));
-            let away = (at - at.clamp(low, high)).abs();
-            if square {
-                away.max_element()
-            } else {
-                away.length()
-            }
-        })
-        .fold(f32::MAX, f32::min)
-}
-
 fn distance(at: Vec2, square: bool) -> f32 {
-    let sides = BOXES.map(|(sides, _)| side_distance(sides, at, square));
-    sides[0].min(sides[1])
+    let sides = BOXES.iter().flat_map(|([left, top, right, bottom], _)| {
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+        let corners = corners.map(|[x, y]| Vec2::new(*x, *y));
+        (0..4).map(move |i| (corners[i], corners[(i + 1) % 4]))
+    });
+    let away = sides.map(|(a, b)| {
+        let away = (at - at.clamp(a.min(b), a.max(b))).abs();
+        if square {
+            away.max_element()
+        } else {
+            away.length()
+        }
+    });
+    away.fold(f32::MAX, f32::min)
 }
 
 fn centres() -> impl Iterator<Item = (usize, Vec2)> {
@@ -153,34 +138,27 @@ fn assert_along_sides(ink: &[f32], (most, least): (f32, f32), square: bool, what
             let (x, y) = (left + t * (right - left), top + t * (bottom - top));
             for side in [[x, top], [x, bottom], [left, y], [right, y]] {
                 let side = Vec2::from(side);
-                let near = |(i, at): (usize, Vec2)| ink[i] > 0.4 && at.distance(side) <= least;
                 let (low, high) = ((side - least).floor(), (side + least).ceil());
-                let rows = low.y as u32..high.y as u32;
-                let found = rows
-                    .flat_map(|y| (low.x as u32..high.x as u32).map(move |x| (x, y)))
-                    .any(|(x, y)| {
-                        let at = Vec2::new(x as f32, y as f32) + 0.5;
-                        near(((y * WIDTH + x) as usize, at))
-                    });
+                let columns = low.x as u32..high.x as u32;
+                let mut near = (low.y as u32..high.y as u32)
+                    .flat_map(|y| columns.clone().map(move |x| UVec2::new(x, y)));
+                let found = near.any(|at| {
+                    let is_near = (at.as_vec2() + 0.5).distance(side) <= least;
+                    is_near && ink[(at.y * WIDTH + at.x) as usize] > 0.4
+                });
                 assert!(found, "{what}: no ink within {least} px of {side}");
             }
         }
     }
 }
 
-/// The length of all sides in pixels.
-fn perimeter() -> f32 {
-    let around = BOXES.map(|([l, t, r, b], _)| 2.0 * (r - l + b - t));
-    around[0] + around[1]
-}
-
 /// The mean width of a line along all sides. Sides are drawn up to half a texel longer or
 /// shorter at both ends, and lines overlap at eight corners.
 fn assert_width(ink: &[f32], width: f32, scale: f32, what: &str) {
+    let around = BOXES.map(|([l, t, r, b], _)| 2.0 * (r - l + b - t));
     let area: f32 = ink.iter().sum();
-    let wanted = perimeter() * width;
+    let wanted = (around[0] + around[1]) * width;
     let most = 8.0 * (scale * width + width * width);
-    println!("{what}: {:.3} px", area / perimeter());
     assert!(
         (area - wanted).abs() <= most,
         "{what}: {area}, not {wanted}"
@@ -215,16 +193,7 @@ fn outlines_are_where_the_geometry_is() {
 
 #[test]
 fn contours_are_where_the_geometry_is() {
-    assert_contours(&[2.0]);
-}
-
-#[test]
-#[ignore = "long: more widths"]
-fn wide_contours_are_where_the_geometry_is() {
-    assert_contours(&[4.0]);
-}
-
-fn assert_contours(widths: &[f32]) {
+    let width = Contours::default().width;
     let mut small = boxes();
     for scale in SCALES {
         override_main_pass(&mut small, main_pass(scale));
@@ -233,19 +202,16 @@ fn assert_contours(widths: &[f32]) {
             ContourOperator::Sobel,
             ContourOperator::Laplace,
         ] {
-            for &width in widths {
-                let what = format!("{operator:?} contours of {width} px, scale {scale}");
-                let contours = Contours {
-                    operator,
-                    width,
-                    ..default()
-                };
-                let ink = ink(&mut small, &of(contours));
-                let most = 0.5 * scale + 0.5 * width;
-                let least = 0.5 * scale * 2f32.sqrt() + 0.5 * 2f32.sqrt();
-                assert_along_sides(&ink, (most, least), true, &what);
-                assert_width(&ink, width, scale, &what);
-            }
+            let what = format!("{operator:?} contours, scale {scale}");
+            let contours = Contours {
+                operator,
+                ..default()
+            };
+            let ink = ink(&mut small, &of(contours));
+            let most = 0.5 * scale + 0.5 * width;
+            let least = 0.5 * scale * 2f32.sqrt() + 0.5 * 2f32.sqrt();
+            assert_along_sides(&ink, (most, least), true, &what);
+            assert_width(&ink, width, scale, &what);
         }
     }
     assert_eq!(small.errors(), 0);
@@ -259,12 +225,13 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
     let first = UVec2::new(60, 40);
     let style = of(Outlines::default()).with(Contours::default());
     let mut small = new();
+    let viewport = Viewport {
+        physical_position: first,
+        physical_size: size,
+        ..default()
+    };
     small.insert(Camera {
-        viewport: Some(Viewport {
-            physical_position: first,
-            physical_size: size,
-            ..default()
-        }),
+        viewport: Some(viewport),
         ..default()
     });
     let mut alone = Small::new(size, Msaa::Off);
@@ -288,7 +255,7 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
     assert_eq!(small.errors() + alone.errors(), 0);
 }
 
-/// The row of the horizon of `grazing`, in pixels from the top, at a column.
+/// The row of the horizon, in pixels from the top, at a column.
 fn horizon(camera: &Transform, x: f32) -> f32 {
     let tan = (std::f32::consts::PI / 8.0).tan();
     let half = Vec2::new(WIDTH as f32, HEIGHT as f32) * 0.5;
@@ -300,61 +267,41 @@ fn horizon(camera: &Transform, x: f32) -> f32 {
 
 #[test]
 fn a_grazing_plane_has_lines_at_its_horizon_alone() {
-    assert_lines_at_the_horizon_alone(&[0.05], &[2.0]);
-}
-
-#[test]
-#[ignore = "long: two heights, and contours of more widths"]
-fn a_plane_seen_from_above_has_lines_at_its_horizon_alone() {
-    assert_lines_at_the_horizon_alone(&[1.7, 0.05], &[1.0, 2.0, 5.0]);
-}
-
-/// Outlines, and contours of some widths, from some heights.
-fn assert_lines_at_the_horizon_alone(heights: &[f32], widths: &[f32]) {
     let mut small = new();
-    for &height in heights {
-        small.restart(Msaa::Off);
-        small.clear();
-        put(
-            &mut small,
-            Plane3d::default().mesh().size(40_000.0, 40_000.0),
-            Color::srgb(0.8, 0.7, 0.5),
-            Transform::IDENTITY,
-        );
-        let eye = Vec3::new(0.0, height, 0.0);
-        let target = eye - Vec3::new(0.3, 0.02, 1.0);
-        look(&mut small, eye, target, 0.1);
-        let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
-        for scale in SCALES {
-            override_main_pass(&mut small, main_pass(scale));
-            let mut styles = vec![("outlines".into(), 2.0, of(Outlines::default()))];
-            for &width in widths {
-                let contours = Contours { width, ..default() };
-                styles.push((format!("contours of {width} px"), width, of(contours)));
-            }
-            for (name, width, style) in styles {
-                let what = format!("{name}, {height} m, scale {scale}");
-                let ink = ink(&mut small, &style);
-                // Half a texel, the line, and a pixel for the odd part of its width; the
-                // plane ends before the horizon, by 0.02 pixels.
-                let most = scale + 0.5 * width + 1.0;
-                let mut wrong = 0;
-                for (i, at) in centres() {
-                    let away = (at.y - horizon(&camera, at.x)).abs();
-                    wrong += usize::from(ink[i] > 0.02 && away > most);
-                }
-                println!("{what}: {wrong} pixels of false ink");
-                assert_eq!(wrong, 0, "{what}");
-                assert!(ink.iter().any(|i| *i > 0.4), "{what}: no horizon");
-            }
+    small.clear();
+    let plane = Plane3d::default().mesh().size(40_000.0, 40_000.0);
+    let color = Color::srgb(0.8, 0.7, 0.5);
+    put(&mut small, plane, color, Transform::IDENTITY);
+    let eye = Vec3::new(0.0, 0.05, 0.0);
+    let target = eye - Vec3::new(0.3, 0.02, 1.0);
+    look(&mut small, eye, target, 0.1);
+    let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
+    for scale in SCALES {
+        override_main_pass(&mut small, main_pass(scale));
+        for (name, style) in [
+            ("outlines", of(Outlines::default())),
+            ("contours", of(Contours::default())),
+        ] {
+            let ink = ink(&mut small, &style);
+            // Half a texel, the line of 2 px, and a pixel for the odd part of its width; the
+            // plane ends before the horizon, by 0.02 pixels.
+            let most = scale + 1.0 + 1.0;
+            let is_wrong = |(i, at): &(usize, Vec2)| {
+                ink[*i] > 0.02 && (at.y - horizon(&camera, at.x)).abs() > most
+            };
+            let wrong = centres().filter(is_wrong).count();
+            assert_eq!(wrong, 0, "{name}, scale {scale}: pixels of false ink");
+            let lined = ink.iter().any(|i| *i > 0.4);
+            assert!(lined, "{name}, scale {scale}: no horizon");
         }
-        assert_eq!(small.errors(), 0);
     }
+    assert_eq!(small.errors(), 0);
 }
 
-/// The paper's contours include slopes. They are those of a view of the main pass's size.
+/// The paper's contours include slopes, and its outlines compare 5 x 5 neighbours, between which a slope
+/// would be a staircase: both are those of a view of the main pass's size.
 #[test]
-fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
+fn faithful_lines_are_those_of_a_view_of_the_main_passs_size() {
     let contours = |width| {
         of(Contours {
             equations: Equations::Faithful,
@@ -362,32 +309,7 @@ fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
             ..default()
         })
     };
-    let size = UVec2::new(WIDTH, HEIGHT) / 2;
-    let low = ink(&mut Small::new(size, Msaa::Off), &contours(2.0));
-    let mut small = new();
-    override_main_pass(&mut small, Some(size));
-    // A pixel of the main pass on either side is the least.
-    for width in [2.0, 4.0] {
-        let high = ink(&mut small, &contours(width));
-        let mut inked = 0;
-        for (i, at) in centres() {
-            let texel = (0.5 * at).as_uvec2();
-            let wanted = low[(texel.y * size.x + texel.x) as usize];
-            let got = high[i];
-            // Eight bits, over two colours of the picture.
-            let same = (got - wanted).abs() <= 0.03;
-            assert!(same, "{width} px, {at}: {got}, {wanted}");
-            inked += usize::from(wanted > 0.5);
-        }
-        assert!(inked > 500, "{inked}");
-    }
-}
-
-/// Nor do the faithful equations of outlines know pixels of the picture: they compare 5 x 5
-/// neighbours, and between these a slope would be a staircase.
-#[test]
-fn faithful_outlines_are_those_of_a_view_of_the_main_passs_size() {
-    let style = of(Outlines {
+    let outlines = of(Outlines {
         silhouettes: Some(Silhouettes {
             equations: Equations::Faithful,
             threshold: 0.002,
@@ -401,19 +323,28 @@ fn faithful_outlines_are_those_of_a_view_of_the_main_passs_size() {
         ..default()
     });
     let size = UVec2::new(WIDTH, HEIGHT) / 2;
-    let low = ink(&mut Small::new(size, Msaa::Off), &style);
+    let mut half = Small::new(size, Msaa::Off);
     let mut small = new();
     override_main_pass(&mut small, Some(size));
-    let high = ink(&mut small, &style);
-    let mut inked = 0;
-    for (i, at) in centres() {
-        let texel = (0.5 * at).as_uvec2();
-        let wanted = low[(texel.y * size.x + texel.x) as usize];
-        let same = (high[i] - wanted).abs() <= 0.03;
-        assert!(same, "{at}: {}, {wanted}", high[i]);
-        inked += usize::from(wanted > 0.5);
+    // A pixel of the main pass on either side is the least.
+    for (name, at_half, style) in [
+        ("contours of 2 px", contours(2.0), contours(2.0)),
+        ("contours of 4 px", contours(2.0), contours(4.0)),
+        ("outlines", outlines.clone(), outlines),
+    ] {
+        let low = ink(&mut half, &at_half);
+        let high = ink(&mut small, &style);
+        let mut inked = 0;
+        for (i, at) in centres() {
+            let texel = (0.5 * at).as_uvec2();
+            let wanted = low[(texel.y * size.x + texel.x) as usize];
+            // Eight bits, over two colours of the picture.
+            let same = (high[i] - wanted).abs() <= 0.03;
+            assert!(same, "{name}, {at}: {}, {wanted}", high[i]);
+            inked += usize::from(wanted > 0.5);
+        }
+        assert!(inked > 500, "{name}: {inked}");
     }
-    assert!(inked > 500, "{inked}");
 }
 
 /// A tilted plane fills the view, so that the depth map spans 0 to 1 from its top to its
@@ -474,7 +405,6 @@ fn the_range_is_that_of_a_view_of_the_main_passs_size() {
         upscaled.restart(Msaa::Off);
         override_main_pass(&mut upscaled, Some(size));
         let (native, upscaled) = (range(&mut native), range(&mut upscaled));
-        println!("{native:?}");
         assert!(matches!(native, VisibleDepthRange::Visible { .. }));
         assert_eq!(native, upscaled, "scale {scale}");
     }
@@ -492,12 +422,13 @@ fn the_page_has_the_size_of_the_picture() {
         small.settle();
         small.picture()
     };
-    let dots = |shape: ScreenShape| Halftone { shape, ..default() };
-    let cells = Halftone {
+    let dots = |shape| of(Halftone { shape, ..default() });
+    let cells = of(Halftone {
         sampling: ScreenSampling::Cell,
         at_near: 0.5,
-        ..dots(ScreenShape::Round)
-    };
+        shape: ScreenShape::Round,
+        ..default()
+    });
     let lines = SpeedLines {
         rate: 0.0,
         ..default()
@@ -506,10 +437,11 @@ fn the_page_has_the_size_of_the_picture() {
         ink_bleed: 1.0,
         ..default()
     };
-    let mut styles: Vec<_> = SHAPES.into_iter().map(|shape| of(dots(shape))).collect();
-    styles.push(of(cells).with(Misregistration::default()));
-    styles.push(of(cells).with(rough));
-    styles.push(of(Paper::default()).with(lines));
+    let styles = SHAPES.map(dots).into_iter().chain([
+        cells.clone().with(Misregistration::default()),
+        cells.with(rough),
+        of(Paper::default()).with(lines),
+    ]);
     override_main_pass(&mut small, None);
     let plain = shot(&mut small, &ComicStyle::new());
     for style in styles {

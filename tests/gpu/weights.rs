@@ -13,13 +13,6 @@ use crate::{
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
-fn weighted(weight: LineWeight) -> Outlines {
-    Outlines {
-        weight,
-        ..default()
-    }
-}
-
 /// All factors together.
 const ALL: LineWeight = LineWeight {
     outer: 1.5,
@@ -36,67 +29,29 @@ const ALL: LineWeight = LineWeight {
     pressure_length: 30.0,
 };
 
-/// Every pixel of the small scene, at two widths.
+/// Every pixel of the small scene; in a multisampled view, the light is that of the chosen samples.
 #[test]
 fn every_factor_matches_the_reference() {
-    assert_factors_match_the_reference(&[ALL]);
+    assert_pixels(Msaa::Off, SIZE, Outlines::default(), &[1.5, 4.0]);
 }
 
 #[test]
-#[ignore = "long: each factor has a shader of its own"]
-fn every_factor_alone_matches_the_reference() {
-    let even = LineWeight::EVEN;
-    assert_factors_match_the_reference(&[
-        LineWeight {
-            outer: 2.0,
-            inner: 0.5,
-            crease: 0.7,
-            object: 1.3,
-            ..even
-        },
-        LineWeight {
-            shade: 0.6,
-            lit: 1.0,
-            ..even
-        },
-        LineWeight {
-            perspective: 1.0,
-            ..even
-        },
-        LineWeight {
-            nib_roundness: 0.2,
-            nib_angle: 30.0,
-            ..even
-        },
-        LineWeight {
-            taper: 12.0,
-            ..even
-        },
-        LineWeight {
-            pressure: 0.8,
-            pressure_length: 20.0,
-            ..even
-        },
-    ]);
+fn every_factor_of_silhouettes_in_a_multisampled_view_matches_the_reference() {
+    let size = UVec2::new(64, 44);
+    assert_pixels(Msaa::Sample4, size, Outlines::SILHOUETTES, &[3.0]);
 }
 
-fn assert_factors_match_the_reference(factors: &[LineWeight]) {
-    let mut small = Small::new(SIZE, Msaa::Off);
+fn assert_pixels(msaa: Msaa, size: UVec2, outlines: Outlines, widths: &[f32]) {
+    let mut small = Small::new(size, msaa);
     let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
-    for &weight in factors {
-        for width in [1.5, 4.0] {
-            let outlines = Outlines {
-                width,
-                ..weighted(weight)
-            };
-            assert_pass_matches_the_reference(
-                &mut small,
-                &outlined(outlines),
-                None,
-                &format!("{width} px, {weight:?}"),
-            );
-        }
+    for &width in widths {
+        let style = outlined(Outlines {
+            width,
+            weight: ALL,
+            ..outlines
+        });
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{width} px"));
     }
 }
 
@@ -112,9 +67,14 @@ fn ink_across(picture: &image::RgbaImage, columns: Range<u32>, row: u32) -> f64 
     black_ink(picture, columns.map(|x| (x, row)))
 }
 
-/// The width of the line across the middle row.
-fn width_across(small: &mut Small, outlines: Outlines) -> f64 {
-    ink_across(&drawn(small, outlines), 30..66, 32)
+/// Fails unless the line across the middle row has this width.
+fn assert_width(small: &mut Small, outlines: Outlines, want: f64) {
+    let found = ink_across(&drawn(small, outlines), 30..66, 32);
+    let weight = outlines.weight;
+    assert!(
+        (found - want).abs() < 0.02,
+        "{found}, not {want}: {weight:?}"
+    );
 }
 
 fn silhouettes(width: f32, weight: LineWeight) -> Outlines {
@@ -138,26 +98,12 @@ fn rims_before_other_objects_are_wider_than_rims_before_the_same() {
     let back = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
     let front = wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
     for width in [2.0, 4.0] {
-        let apart = width_across(&mut small, silhouettes(width, weight));
-        assert!(
-            (apart - 1.5 * f64::from(width)).abs() < 0.02,
-            "{width}: {apart}"
-        );
-        let group = small
-            .world()
-            .spawn((
-                OutlineGroup,
-                Transform::default(),
-                Visibility::default(),
-                Object,
-            ))
-            .id();
+        let outlines = silhouettes(width, weight);
+        assert_width(&mut small, outlines, 1.5 * f64::from(width));
+        let group = (OutlineGroup, Transform::default(), Visibility::default());
+        let group = small.world().spawn((group, Object)).id();
         small.world().entity_mut(group).add_children(&[back, front]);
-        let together = width_across(&mut small, silhouettes(width, weight));
-        assert!(
-            (together - 0.5 * f64::from(width)).abs() < 0.02,
-            "{width}: {together}"
-        );
+        assert_width(&mut small, outlines, 0.5 * f64::from(width));
         small.world().entity_mut(group).remove::<OutlineGroup>();
     }
 }
@@ -180,9 +126,7 @@ fn edges_between_objects_have_their_own_width() {
             },
             ..default()
         };
-        let found = width_across(&mut small, outlines);
-        let want = 2.0 * f64::from(factor);
-        assert!((found - want).abs() < 0.02, "{factor}: {found}");
+        assert_width(&mut small, outlines, 2.0 * f64::from(factor));
     }
 }
 
@@ -206,27 +150,26 @@ fn lines_follow_the_light() {
         .world()
         .spawn((KeyLight, Transform::default(), Object))
         .id();
-    for sign in [1.0, -1.0] {
-        let shine = Transform::default().looking_to(Vec3::NEG_X * sign, Vec3::Y);
+    // The steps beside the rim are no lines.
+    let rim = Silhouettes {
+        threshold: 0.1,
+        ..default()
+    };
+    let outlines = Outlines {
+        silhouettes: Some(rim),
+        ..silhouettes(4.0, weight)
+    };
+    for (shine, [left, right]) in [(Vec3::NEG_X, [6.0, 0.0]), (Vec3::X, [0.0, 6.0])] {
+        let shine = Transform::default().looking_to(shine, Vec3::Y);
         small.world().entity_mut(light).insert(shine);
-        // The steps beside the rim are no lines.
-        let rim = Silhouettes {
-            threshold: 0.1,
-            ..default()
-        };
-        let outlines = Outlines {
-            silhouettes: Some(rim),
-            ..silhouettes(4.0, weight)
-        };
         let picture = drawn(&mut small, outlines);
-        let [left, right] = [18..38, 58..78].map(|columns| ink_across(&picture, columns, 32));
-        let [lit, dark] = if sign > 0.0 {
-            [right, left]
-        } else {
-            [left, right]
-        };
-        assert!(lit < 0.02, "{sign}: {left}, {right}");
-        assert!((dark - 6.0).abs() < 0.02, "{sign}: {left}, {right}");
+        for (columns, want) in [(18..38, left), (58..78, right)] {
+            let found = ink_across(&picture, columns, 32);
+            assert!(
+                (found - want).abs() < 0.02,
+                "{shine:?}: {found}, not {want}"
+            );
+        }
     }
 }
 
@@ -241,13 +184,10 @@ fn a_nib_draws_thick_and_thin() {
     let mut small = towards_the_sky(SIZE);
     wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
     wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
-    let upright = width_across(&mut small, silhouettes(4.0, weight(90.0)));
-    assert!((upright - 1.0).abs() < 0.02, "{upright}");
-    let across = width_across(&mut small, silhouettes(4.0, weight(0.0)));
-    assert!((across - 4.0).abs() < 0.02, "{across}");
-    let oblique = width_across(&mut small, silhouettes(4.0, weight(45.0)));
-    let want = 4.0 * 0.5f64.mul_add(1.0, 0.5 * 0.0625).sqrt();
-    assert!((oblique - want).abs() < 0.02, "{oblique}, {want}");
+    let oblique = 4.0 * (0.5 + 0.5 * 0.0625f64).sqrt();
+    for (angle, want) in [(90.0, 1.0), (0.0, 4.0), (45.0, oblique)] {
+        assert_width(&mut small, silhouettes(4.0, weight(angle)), want);
+    }
 }
 
 /// Near things have wider lines than far things, in proportion to their distance.
@@ -270,51 +210,6 @@ fn lines_follow_perspective() {
     // The middle between 12 and 30 is 21.
     assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.02, "{near}");
     assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.02, "{far}");
-}
-
-/// A line that ends in the middle of the picture is thin at its end, whole behind the
-/// taper, and grows in between.
-#[test]
-fn a_line_tapers_towards_its_loose_end() {
-    let weight = |taper| LineWeight {
-        taper,
-        ..LineWeight::EVEN
-    };
-    let mut small = towards_the_sky(SIZE);
-    // A slot that closes: the wall behind it comes nearer from left to right, until there is
-    // no step any more.
-    let behind = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 0.0);
-    small.world().entity_mut(behind).insert(
-        Transform::from_xyz(0.0, 0.0, -65.0)
-            .with_rotation(Quat::from_rotation_y(-30f32.to_radians())),
-    );
-    wall(&mut small, [-60.0, 0.0], [60.0, 40.0], 50.0);
-    let profile = |small: &mut Small, taper| {
-        let picture = drawn(small, silhouettes(4.0, weight(taper)));
-        let column = |x: u32| black_ink(&picture, (20..44).map(|y| (x, y)));
-        (0..96).map(column).collect::<Vec<f64>>()
-    };
-    let blunt = profile(&mut small, 0.0);
-    let tapered = profile(&mut small, 24.0);
-    // The end is round: half of the width beyond the last crack.
-    let end = blunt.iter().position(|width| *width < 0.01);
-    let end = end.expect("an end") - 2;
-    assert!((60..90).contains(&end), "{blunt:?}");
-    assert_eq!(
-        blunt[..end - 30],
-        tapered[..end - 30],
-        "whole behind the taper"
-    );
-    for x in end - 24..end {
-        assert!(tapered[x] <= tapered[x - 1] + 1e-3, "{x}: {tapered:.2?}");
-    }
-    // Half of the taper's length from the end, the width is half: the end is known to a crack,
-    // over which it changes by 1.5 / 24. `logical_pixels.rs` has every crack of a taper.
-    let half = tapered[end - 12] / blunt[end - 12];
-    assert!(
-        (half - 0.5).abs() < 1.5 / 24.0 + 0.02,
-        "{half}: {tapered:.2?}"
-    );
 }
 
 /// Lines fade as the engine's fog covers a black surface at the same place, at the middle of
@@ -340,21 +235,16 @@ fn lines_fade_as_black_surfaces_do() {
         },
     ];
     for falloff in falloffs {
-        let fog = DistanceFog {
+        small.insert(DistanceFog {
             color: Color::srgba(1.0, 1.0, 1.0, 0.9),
             falloff: falloff.clone(),
             ..default()
-        };
-        small.insert(fog.clone());
+        });
         // The engine's fog over the same wall in black.
         let fogged = fogged_black(&mut small, front);
-        for fades in [true, false] {
+        for (fog, fades) in [(LineFog::Fade, true), (LineFog::Ignore, false)] {
             let outlines = Outlines {
-                fog: if fades {
-                    LineFog::Fade
-                } else {
-                    LineFog::Ignore
-                },
+                fog,
                 ..silhouettes(4.0, LineWeight::EVEN)
             };
             let picture = drawn(&mut small, outlines);
@@ -363,7 +253,6 @@ fn lines_fade_as_black_surfaces_do() {
                 assert_eq!(picture.get_pixel(20, row).0[0], 255);
                 let [black, ..] = linear(&fogged, 46, row);
                 let want = if fades { 1.0 - black } else { 1.0 };
-                println!("{falloff:?}, row {row}: {found:.3}, {want:.3}");
                 assert!(
                     (found - want).abs() < 0.012,
                     "{falloff:?}, row {row}: {found}, {want}"
@@ -376,11 +265,9 @@ fn lines_fade_as_black_surfaces_do() {
 /// The picture without lines, of a wall that is painted black.
 fn fogged_black(small: &mut Small, wall: Entity) -> image::RgbaImage {
     small.style(&ComicStyle::new());
-    let material = small
-        .world()
-        .get::<MeshMaterial3d<StandardMaterial>>(wall)
-        .expect("a material")
-        .clone();
+    let world = small.world();
+    let material = world.get::<MeshMaterial3d<StandardMaterial>>(wall);
+    let material = material.expect("a material").clone();
     let paint = |small: &mut Small, color| {
         let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
         materials.get_mut(&material).expect("loaded").base_color = color;
@@ -390,26 +277,6 @@ fn fogged_black(small: &mut Small, wall: Entity) -> image::RgbaImage {
     let black = small.picture();
     paint(small, Color::WHITE);
     black
-}
-
-/// Silhouettes alone, in a multisampled view: the light is that of the chosen samples.
-#[test]
-fn lines_follow_the_light_in_multisampled_views() {
-    let mut small = Small::new(UVec2::new(64, 44), Msaa::Sample4);
-    let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
-    small.world().spawn((KeyLight, light, Object));
-    let lit = LineWeight {
-        shade: 0.6,
-        lit: 0.5,
-        outer: 1.5,
-        taper: 8.0,
-        perspective: 0.5,
-        pressure: 0.6,
-        pressure_length: 16.0,
-        ..LineWeight::EVEN
-    };
-    let outlines = silhouettes(3.0, lit);
-    assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, "4 samples");
 }
 
 /// Ink of every row of the picture between two columns.

@@ -1,7 +1,7 @@
 //! Pipelines that are not ready, styles and cameras that come and go.
 
 use super::{
-    prepasses::{in_background, is_compiling, step, still},
+    prepasses::{allocated, in_background, is_compiling, step, still},
     *,
 };
 
@@ -66,101 +66,54 @@ fn replace(small: &mut Small, id: AssetId<Shader>, text: String) {
 
 #[test]
 fn without_a_renderer_the_plugin_does_nothing() {
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, ComicsPlugin));
     let mut with_assets = App::new();
     with_assets.add_plugins((MinimalPlugins, AssetPlugin::default(), ComicsPlugin));
     with_assets.update();
-    let camera = app
-        .world_mut()
-        .spawn((Contours::default(), Desaturation::default()))
-        .id();
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, ComicsPlugin));
+    let style = (Contours::default(), Desaturation::default());
+    let camera = app.world_mut().spawn(style).id();
     for _ in 0..3 {
         app.update();
     }
     assert!(app.world().get::<Contours>(camera).is_some());
-    assert!(
-        app.world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .is_empty()
-    );
+    let diagnostics = app.world().resource::<ComicsDiagnostics>();
+    assert!(diagnostics.cameras.is_empty());
+}
+
+/// Whether the diagnostics list the camera.
+fn is_listed(small: &Small) -> bool {
+    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+    diagnostics.cameras.contains_key(&small.camera)
 }
 
 #[test]
 fn a_removed_style_and_an_inactive_camera_run_nothing() {
     let mut small = Small::new(size(), Msaa::Off);
-    small.settle();
-    let original = small.picture();
+    let original = small.settle().picture();
     small.style(&full_style());
-    small.settle();
-    assert_ne!(small.picture(), original);
+    assert_ne!(small.settle().picture(), original);
     small.style(&ComicStyle::default());
-    small.settle();
-    assert_eq!(small.picture(), original, "a removed style leaves no trace");
-    let camera = small.camera;
-    assert!(
-        small
-            .headless
-            .app
-            .world()
-            .get::<DepthPrepass>(camera)
-            .is_none(),
-        "our prepass stays"
-    );
-    assert!(
-        !small
-            .headless
-            .app
-            .world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .contains_key(&camera)
-    );
+    let removed = small.settle().picture();
+    assert_eq!(removed, original, "a removed style leaves no trace");
+    assert!(!small.camera_mut().contains::<DepthPrepass>());
+    assert!(!is_listed(&small));
 
     small.style(&full_style());
     small.settle();
     // Edits the component. In Bevy 0.19.1 a `Camera` that is replaced has no
     // target until its projection changes, with or without a style.
-    let activate = |small: &mut Small, is_active| {
-        small
-            .world()
-            .get_mut::<Camera>(camera)
-            .expect("a camera")
-            .is_active = is_active;
+    for is_active in [false, true] {
+        let mut camera = small.camera_mut();
+        camera.get_mut::<Camera>().expect("a camera").is_active = is_active;
         small.settle();
-    };
-    activate(&mut small, false);
-    assert!(
-        !small
-            .headless
-            .app
-            .world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .contains_key(&camera)
-    );
-    activate(&mut small, true);
-    let stages = small
-        .headless
-        .app
-        .world()
-        .resource::<ComicsDiagnostics>()
-        .cameras
-        .get(&camera)
-        .cloned();
-    assert!(small.ran(ComicsStage::Stylize), "{stages:?}");
-    small.world().despawn(camera);
+        assert_eq!(is_listed(&small), is_active);
+    }
+    assert!(small.ran(ComicsStage::Stylize));
+    small.camera_mut().despawn();
     small.headless.step(3);
-    assert!(
-        small
-            .headless
-            .app
-            .world()
-            .resource::<ComicsDiagnostics>()
-            .cameras
-            .is_empty()
-    );
+    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+    assert!(diagnostics.cameras.is_empty());
     assert_eq!(small.errors(), 0);
 }
 
@@ -170,39 +123,24 @@ fn views_that_come_and_go_leave_no_buffers() {
     let mut small = Small::alone(options(size()), Msaa::Off);
     small.style(&full_style());
     small.settle();
-    let buffers = |small: &Small| {
-        let world = small.headless.app.sub_app(RenderApp).world();
-        let instance = world.resource::<bevy::render::renderer::RenderInstance>();
-        let report = instance
-            .generate_report()
-            .expect("wgpu's own backends report");
-        report.hub_report().buffers.num_allocated
-    };
+    let buffers = |small: &Small| allocated(small)[0];
     small.headless.step(6);
     let before = buffers(&small);
     assert!(before > 0, "the report counts nothing");
     for _ in 0..6 {
         let target: RenderTarget = small.headless.render_target();
-        let extra = small
-            .world()
-            .spawn((
-                camera(target, Msaa::Off),
-                Contours::default(),
-                VisibleDepthRange::default(),
-            ))
-            .insert(Camera {
-                order: 1,
-                ..default()
-            })
-            .id();
+        let order = Camera {
+            order: 1,
+            ..default()
+        };
+        let style = (Contours::default(), VisibleDepthRange::default());
+        let extra = (camera(target, Msaa::Off), style);
+        let extra = small.world().spawn(extra).insert(order).id();
         small.headless.step(3);
         small.world().despawn(extra);
         small.headless.step(3);
     }
     small.headless.step(6);
-    assert!(
-        buffers(&small) <= before + 8,
-        "{before} buffers grew to {}",
-        buffers(&small)
-    );
+    let after = buffers(&small);
+    assert!(after <= before + 8, "{before} buffers grew to {after}");
 }

@@ -8,6 +8,8 @@ pub mod prepasses;
 mod recovery;
 mod views;
 
+use bevy::light::cluster::GlobalClusterSettings;
+
 use crate::{prelude::*, small::camera};
 
 fn full_style() -> ComicStyle {
@@ -43,6 +45,12 @@ fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
         .filter(|pair| differs(*pair))
         .count() as f64
         / f64::from(a.width() * a.height())
+}
+
+/// Has the engine divide lights among clusters on the CPU.
+fn cluster_on_cpu(small: &mut Small) {
+    let mut clusters = small.world().resource_mut::<GlobalClusterSettings>();
+    clusters.gpu_clustering = None;
 }
 
 fn outcome(small: &Small, camera: Entity, stage: ComicsStage) -> Option<StageOutcome> {

@@ -15,7 +15,7 @@ use image::RgbaImage;
 
 use super::*;
 use crate::{
-    pairwise::effects::{GROUPS, Group, LINES},
+    pairwise::effects::{GROUPS, Group},
     prelude::*,
     small::{RenderErrors, spawn_objects},
 };
@@ -99,10 +99,9 @@ fn mark(small: &mut Small, [front, behind]: [Entity; 2], on: bool) {
 
 /// The picture of a new camera, without history, in a style.
 fn shoot(small: &mut Small, msaa: Msaa, style: Option<&ComicStyle>) -> RgbaImage {
-    let (old, target) = (small.camera, small.headless.render_target());
-    let world = small.world();
-    world.despawn(old);
-    small.camera = world.spawn(camera(target, msaa)).id();
+    let target = small.headless.render_target();
+    small.camera_mut().despawn();
+    small.camera = small.world().spawn(camera(target, msaa)).id();
     if let Some(style) = style {
         small.style(style);
     }
@@ -195,14 +194,6 @@ fn check(size: UVec2, msaa: Msaa, groups: &[Group]) {
     let off = changed(before.last().expect("pictures"), &kept);
     assert_eq!(off, 0.0, "{msaa:?}, {last}, same camera: {off} differs");
     assert_eq!(small.errors(), 1, "{msaa:?}: errors on the new device");
-}
-
-/// Lines have most passes and buffers.
-#[test]
-#[ignore = "long: many frames on two devices"]
-fn lines_are_the_same_on_a_new_device() {
-    let lines = GROUPS.iter().find(|(name, _)| *name == LINES);
-    check(tiny(), Msaa::Off, &[*lines.expect("a group")]);
 }
 
 #[test]

@@ -50,7 +50,6 @@ pub mod overshoot;
 pub mod owner_plane;
 pub mod paint;
 pub mod paper;
-pub mod ping_pong;
 pub mod planes;
 pub mod pressure;
 pub mod proxy;
