@@ -1,5 +1,7 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
+use bevy_comics::objects::ObjectAbstraction;
+
 use crate::{
     prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
@@ -8,26 +10,24 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(96, 64);
 const WIDTH: f32 = 4.0;
 
-/// A cube that is seen along one of its edges, with creases.
+/// Starts over with a cube that is seen along one of its edges, with creases.
 fn cube(small: &mut Small, msaa: Msaa) -> Entity {
     towards_the_sky_again(small, msaa);
     let at = leaning(0.0, 0.0);
     let cube = small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
-    draw(small, LineWeight::EVEN);
+    small.style(&creases(LineWeight::EVEN));
+    small.settle();
     cube
 }
 
-fn draw(small: &mut Small, weight: LineWeight) {
-    let outlines = Outlines {
+fn creases(weight: LineWeight) -> ComicStyle {
+    ComicStyle::new().with(Outlines {
         silhouettes: None,
-        creases: Some(Creases::default()),
         objects: None,
         width: WIDTH,
         weight,
         ..default()
-    };
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
+    })
 }
 
 /// The place of the cube of which the edge leans by an angle and passes the middle of the picture at a
@@ -103,7 +103,8 @@ fn creases_are_as_wide_as_their_weight() {
             crease: factor,
             ..LineWeight::EVEN
         };
-        draw(&mut small, weight);
+        small.style(&creases(weight));
+        small.settle();
         for shift in [0.0, 0.3] {
             let picture = moved(&mut small, cube, leaning(0.0, shift));
             let want = f64::from(WIDTH * factor);
@@ -132,5 +133,40 @@ fn other_edges_do_not_move_creases() {
     for [error, ink] in found {
         assert!(error.abs() < 0.5, "{error}");
         assert!(ink > 0.9 * f64::from(WIDTH), "{ink}");
+    }
+}
+
+/// Where the picture is abstract, creases lose opacity: by the abstraction of the place, and by
+/// that of the object where effects follow objects. The ink of six pixels is rounded by less than
+/// 0.01 each.
+#[test]
+fn creases_fade_with_abstraction() {
+    let mut small = towards_the_sky(SIZE);
+    let cube = cube(&mut small, Msaa::Off);
+    for (granularity, level, left) in [
+        (Granularity::Pixel, None, 0.6),
+        (Granularity::Pixel, Some(1.0), 0.6),
+        (Granularity::Object, None, 0.6),
+        (Granularity::Object, Some(1.0), 0.2),
+        (Granularity::Object, Some(0.0), 1.0),
+    ] {
+        small.style(&creases(LineWeight::EVEN).with(Abstraction {
+            at_near: 0.5,
+            at_far: 0.5,
+            granularity,
+            line_threshold: 1.0,
+            crease_opacity: 0.2,
+            ..default()
+        }));
+        let mut cube = small.world().entity_mut(cube);
+        cube.remove::<ObjectAbstraction>();
+        if let Some(level) = level {
+            cube.insert(ObjectAbstraction::fixed(level));
+        }
+        let picture = small.settle().picture();
+        let found = black_ink(&picture, (0..SIZE.x).map(|x| (x, 32)));
+        let want = f64::from(WIDTH) * left;
+        let what = format!("{granularity:?}, {level:?}: {found}, {want}");
+        assert!((found - want).abs() < 0.06, "{what}");
     }
 }

@@ -2,7 +2,7 @@
 //! function.
 
 use bevy_comics_testkit::{
-    reference::remember::{At, Memory, Pixel, ROUNDING, inside, past_at, past_nearest, square},
+    reference::remember::{At, Pixel, ROUNDING, inside, past_at, past_nearest, square},
     wgsl::without_stage,
 };
 
@@ -183,12 +183,7 @@ impl Scene {
 
     /// Positions of the grid are a quarter of a pixel away from those of the viewport.
     fn body(&self) -> String {
-        let Self {
-            scale,
-            spacing,
-            share,
-            ..
-        } = self;
+        let (scale, spacing, share) = (self.scale, self.spacing, self.share);
         let [width, height] = SIZE;
         let [left, top] = ORIGIN;
         format!(
@@ -255,8 +250,7 @@ fn is_doubtful(pixel: &Pixel) -> bool {
     })
 }
 
-/// Compares all pixels of a scene. Adds how many were covered, uncovered, limited, not seen in the
-/// last frame and not steady, and in how many something had vanished.
+/// Compares all pixels of a scene. Counts those where each of six things happened.
 fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
     let mut doubtful = 0;
     for (at, [inks, depths]) in pixels().zip(scene.found()) {
@@ -282,24 +276,19 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
         let count = frames.floor() + 256.0 * (missing + 32.0 * unsteady);
         let found = [depths[0], depths[1]].map(f64::from);
         assert_eq!(found, [pixel.nearest, count], "{what}");
-        add(tally, &pixel, &memory);
+        let happened = [
+            memory.covered,
+            memory.uncovered,
+            memory.vanished,
+            memory.limited,
+            !pixel.seen,
+            unsteady > 32.0,
+        ];
+        for (count, is) in tally.iter_mut().zip(happened) {
+            *count += u32::from(is);
+        }
     }
     assert!(doubtful < 40, "{doubtful}");
-}
-
-fn add(tally: &mut [u32; 6], pixel: &Pixel, memory: &Memory) {
-    let changes = memory.changes;
-    let all = [
-        changes.covered,
-        changes.uncovered,
-        changes.vanished,
-        memory.limited,
-        !pixel.seen,
-        memory.counts[2] > 32.0,
-    ];
-    for (count, is) in tally.iter_mut().zip(all) {
-        *count += u32::from(is);
-    }
 }
 
 /// Views that stand still, drift, and move; with grids that are as fine as the picture and finer; and

@@ -410,11 +410,11 @@ impl Ink {
 }
 
 /// Ink as it is stored: steps are finest where little light is left.
-pub fn encoded(ink: f64) -> f64 {
+fn encoded(ink: f64) -> f64 {
     1.0 - (1.0 - ink.clamp(0.0, 1.0)).sqrt()
 }
 
 /// The inverse of [`encoded`].
-pub fn decoded(stored: f64) -> f64 {
+fn decoded(stored: f64) -> f64 {
     1.0 - (1.0 - stored) * (1.0 - stored)
 }
