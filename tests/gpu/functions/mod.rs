@@ -51,6 +51,7 @@ mod speed_lines;
 mod stipple;
 mod stroke_level;
 mod stylized_highlight;
+mod surface;
 mod tolerance;
 mod tone_ramp;
 mod toon;
