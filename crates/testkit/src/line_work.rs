@@ -273,12 +273,13 @@ fn loads(module: &Module, function: &Function, block: &Block, rounds: usize) -> 
 
 /// Texels per pixel that the search for blocks fetches, with these definitions.
 fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
-    let definition = |definition| match definition {
-        &ShaderDefVal::Bool(ref name, on) => on.then_some((name.as_str(), None)),
-        ShaderDefVal::UInt(name, value) => Some((name.as_str(), Some(*value))),
-        ShaderDefVal::Int(..) => None,
-    };
-    let definitions: Vec<wgsl::Definition> = definitions.iter().filter_map(definition).collect();
+    let definitions: Vec<wgsl::Definition> = (definitions.iter())
+        .filter_map(|definition| match definition {
+            ShaderDefVal::Bool(name, on) => on.then_some((name.as_str(), None)),
+            ShaderDefVal::UInt(name, value) => Some((name.as_str(), Some(*value))),
+            ShaderDefVal::Int(..) => None,
+        })
+        .collect();
     let text = std::fs::read_to_string(format!("{ROOT}/src/lines/walk.wgsl"));
     let module = wgsl::module_with(&text.expect("the shader"), &definitions).expect("it compiles");
     let cracks = definitions.iter().any(|(name, _)| *name == "CRACKS");
