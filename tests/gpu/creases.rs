@@ -10,12 +10,12 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(96, 64);
 const WIDTH: f32 = 4.0;
 
-/// Starts over with a cube that is seen along one of its edges, with creases.
-fn cube(small: &mut Small, msaa: Msaa) -> Entity {
+/// Starts over with a cube that is seen along one of its edges.
+fn cube(small: &mut Small, msaa: Msaa, style: &ComicStyle) -> Entity {
     towards_the_sky_again(small, msaa);
     let at = leaning(0.0, 0.0);
     let cube = small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
-    small.style(&creases(LineWeight::EVEN));
+    small.style(style);
     small.settle();
     cube
 }
@@ -68,7 +68,7 @@ fn creases_lie_where_their_sides_meet() {
         (Msaa::Off, 0.05, 0.09, 0.1),
         (Msaa::Sample4, 0.15, 0.16, 0.2),
     ] {
-        let cube = cube(&mut small, msaa);
+        let cube = cube(&mut small, msaa, &creases(LineWeight::EVEN));
         for slope in [0.05f32, 0.2, 0.35, 0.5, 0.7, 0.9] {
             let mut errors = vec![];
             let mut widths = vec![];
@@ -97,7 +97,7 @@ fn creases_lie_where_their_sides_meet() {
 #[test]
 fn creases_are_as_wide_as_their_weight() {
     let mut small = towards_the_sky(SIZE);
-    let cube = cube(&mut small, Msaa::Off);
+    let cube = cube(&mut small, Msaa::Off, &creases(LineWeight::EVEN));
     for factor in [0.25, 0.6, 1.0, 2.0f32] {
         let weight = LineWeight {
             crease: factor,
@@ -124,7 +124,7 @@ fn creases_are_as_wide_as_their_weight() {
 #[test]
 fn other_edges_do_not_move_creases() {
     let mut small = towards_the_sky(SIZE);
-    let cube = cube(&mut small, Msaa::Off);
+    let cube = cube(&mut small, Msaa::Off, &creases(LineWeight::EVEN));
     small.world().entity_mut(cube).insert(leaning(0.0, 0.3));
     // A bar two pixels to the left of the edge, in front of it.
     wall(&mut small, [-20.0, -10.0], [-1.2, 10.0], 100.0);
@@ -136,37 +136,27 @@ fn other_edges_do_not_move_creases() {
     }
 }
 
-/// Where the picture is abstract, creases lose opacity: by the abstraction of the place, and by
-/// that of the object where effects follow objects. The ink of six pixels is rounded by less than
-/// 0.01 each.
+/// Where the picture is abstract, creases lose opacity, by the abstraction of their object. The
+/// ink of six pixels is rounded by less than 0.01 each.
 #[test]
 fn creases_fade_with_abstraction() {
     let mut small = towards_the_sky(SIZE);
-    let cube = cube(&mut small, Msaa::Off);
-    for (granularity, level, left) in [
-        (Granularity::Pixel, None, 0.6),
-        (Granularity::Pixel, Some(1.0), 0.6),
-        (Granularity::Object, None, 0.6),
-        (Granularity::Object, Some(1.0), 0.2),
-        (Granularity::Object, Some(0.0), 1.0),
-    ] {
-        small.style(&creases(LineWeight::EVEN).with(Abstraction {
-            at_near: 0.5,
-            at_far: 0.5,
-            granularity,
-            line_threshold: 1.0,
-            crease_opacity: 0.2,
-            ..default()
-        }));
-        let mut cube = small.world().entity_mut(cube);
-        cube.remove::<ObjectAbstraction>();
+    let style = creases(LineWeight::EVEN).with(Abstraction {
+        at_near: 0.5,
+        at_far: 0.5,
+        line_threshold: 1.0,
+        crease_opacity: 0.2,
+        ..default()
+    });
+    let cube = cube(&mut small, Msaa::Off, &style);
+    for (level, left) in [(None, 0.6), (Some(1.0), 0.2), (Some(0.0), 1.0)] {
         if let Some(level) = level {
-            cube.insert(ObjectAbstraction::fixed(level));
+            let own = ObjectAbstraction::fixed(level);
+            small.world().entity_mut(cube).insert(own);
         }
         let picture = small.settle().picture();
         let found = black_ink(&picture, (0..SIZE.x).map(|x| (x, 32)));
         let want = f64::from(WIDTH) * left;
-        let what = format!("{granularity:?}, {level:?}: {found}, {want}");
-        assert!((found - want).abs() < 0.06, "{what}");
+        assert!((found - want).abs() < 0.06, "{level:?}: {found}, {want}");
     }
 }

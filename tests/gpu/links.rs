@@ -123,16 +123,7 @@ fn weak(continuity: f32) -> Outlines {
 #[test]
 fn lines_match_the_reference_in_views_of_odd_sizes() {
     let mut small = Small::new(UVec2::new(61, 37), Msaa::Off);
-    for size in [
-        [61, 37],
-        [97, 65],
-        [131, 33],
-        [1, 1],
-        [2, 3],
-        [3, 9],
-        [6, 1],
-        [13, 7],
-    ] {
+    for size in [[61, 37], [97, 65], [131, 33], [1, 1], [2, 3], [13, 7]] {
         small.headless.resize(size.into(), 1.0);
         small.restart(Msaa::Off);
         for outlines in [Outlines::default(), weak(8.0)] {
