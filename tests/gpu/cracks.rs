@@ -190,21 +190,3 @@ fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
     assert!(joins > 20, "{joins}");
     assert_eq!(small.errors(), 0);
 }
-
-/// Without lines along cracks there is nothing to read.
-#[test]
-fn a_view_without_lines_has_no_cracks() {
-    let mut small = Small::new(SIZE, Msaa::Off);
-    small.style(&outlined(Outlines::default()));
-    small.settle();
-    assert!(small.cracks().is_some());
-    let none = Outlines {
-        silhouettes: None,
-        creases: None,
-        objects: None,
-        ..default()
-    };
-    small.style(&outlined(none));
-    small.settle();
-    assert!(small.cracks().is_none());
-}

@@ -1,5 +1,7 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
+use bevy_comics::objects::ObjectAbstraction;
+
 use crate::{
     prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
@@ -8,26 +10,24 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(96, 64);
 const WIDTH: f32 = 4.0;
 
-/// A cube that is seen along one of its edges, with creases.
-fn cube(small: &mut Small, msaa: Msaa) -> Entity {
+/// Starts over with a cube that is seen along one of its edges.
+fn cube(small: &mut Small, msaa: Msaa, style: &ComicStyle) -> Entity {
     towards_the_sky_again(small, msaa);
     let at = leaning(0.0, 0.0);
     let cube = small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
-    draw(small, LineWeight::EVEN);
+    small.style(style);
+    small.settle();
     cube
 }
 
-fn draw(small: &mut Small, weight: LineWeight) {
-    let outlines = Outlines {
+fn creases(weight: LineWeight) -> ComicStyle {
+    ComicStyle::new().with(Outlines {
         silhouettes: None,
-        creases: Some(Creases::default()),
         objects: None,
         width: WIDTH,
         weight,
         ..default()
-    };
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
+    })
 }
 
 /// The place of the cube of which the edge leans by an angle and passes the middle of the picture at a
@@ -68,7 +68,7 @@ fn creases_lie_where_their_sides_meet() {
         (Msaa::Off, 0.05, 0.09, 0.1),
         (Msaa::Sample4, 0.15, 0.16, 0.2),
     ] {
-        let cube = cube(&mut small, msaa);
+        let cube = cube(&mut small, msaa, &creases(LineWeight::EVEN));
         for slope in [0.05f32, 0.2, 0.35, 0.5, 0.7, 0.9] {
             let mut errors = vec![];
             let mut widths = vec![];
@@ -97,13 +97,14 @@ fn creases_lie_where_their_sides_meet() {
 #[test]
 fn creases_are_as_wide_as_their_weight() {
     let mut small = towards_the_sky(SIZE);
-    let cube = cube(&mut small, Msaa::Off);
+    let cube = cube(&mut small, Msaa::Off, &creases(LineWeight::EVEN));
     for factor in [0.25, 0.6, 1.0, 2.0f32] {
         let weight = LineWeight {
             crease: factor,
             ..LineWeight::EVEN
         };
-        draw(&mut small, weight);
+        small.style(&creases(weight));
+        small.settle();
         for shift in [0.0, 0.3] {
             let picture = moved(&mut small, cube, leaning(0.0, shift));
             let want = f64::from(WIDTH * factor);
@@ -123,7 +124,7 @@ fn creases_are_as_wide_as_their_weight() {
 #[test]
 fn other_edges_do_not_move_creases() {
     let mut small = towards_the_sky(SIZE);
-    let cube = cube(&mut small, Msaa::Off);
+    let cube = cube(&mut small, Msaa::Off, &creases(LineWeight::EVEN));
     small.world().entity_mut(cube).insert(leaning(0.0, 0.3));
     // A bar two pixels to the left of the edge, in front of it.
     wall(&mut small, [-20.0, -10.0], [-1.2, 10.0], 100.0);
@@ -132,5 +133,30 @@ fn other_edges_do_not_move_creases() {
     for [error, ink] in found {
         assert!(error.abs() < 0.5, "{error}");
         assert!(ink > 0.9 * f64::from(WIDTH), "{ink}");
+    }
+}
+
+/// Where the picture is abstract, creases lose opacity, by the abstraction of their object. The
+/// ink of six pixels is rounded by less than 0.01 each.
+#[test]
+fn creases_fade_with_abstraction() {
+    let mut small = towards_the_sky(SIZE);
+    let style = creases(LineWeight::EVEN).with(Abstraction {
+        at_near: 0.5,
+        at_far: 0.5,
+        line_threshold: 1.0,
+        crease_opacity: 0.2,
+        ..default()
+    });
+    let cube = cube(&mut small, Msaa::Off, &style);
+    for (level, left) in [(None, 0.6), (Some(1.0), 0.2), (Some(0.0), 1.0)] {
+        if let Some(level) = level {
+            let own = ObjectAbstraction::fixed(level);
+            small.world().entity_mut(cube).insert(own);
+        }
+        let picture = small.settle().picture();
+        let found = black_ink(&picture, (0..SIZE.x).map(|x| (x, 32)));
+        let want = f64::from(WIDTH) * left;
+        assert!((found - want).abs() < 0.06, "{level:?}: {found}, {want}");
     }
 }

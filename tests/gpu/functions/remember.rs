@@ -2,7 +2,7 @@
 //! function.
 
 use bevy_comics_testkit::{
-    reference::remember::{At, Memory, Pixel, ROUNDING, inside, past_at, past_nearest, square},
+    reference::remember::{At, Pixel, ROUNDING, inside, past_at, past_nearest, square},
     wgsl::without_stage,
 };
 
@@ -22,12 +22,8 @@ const SURFACE: i64 = 7;
 const INK: i64 = 4;
 
 /// Raw depths of the sky and of surfaces. The fourth and the fifth meet; all others are apart by
-/// a jump, which is a quarter of the depth.
+/// a quarter of the depth.
 const DEPTHS: [f32; 6] = [0.0, 0.125, 0.25, 0.625, 0.65625, 1.0];
-
-fn jump(d: f64) -> f64 {
-    0.25 * d
-}
 
 /// By how many pixels of the viewport each surface moves in a frame.
 type Motions = [[f32; 2]; 6];
@@ -52,6 +48,8 @@ struct Scene {
     /// Pixels of the grid between the depths that are compared.
     spacing: i64,
     share: f32,
+    /// What jumps between surfaces are a quarter of: a factor of the depth, and a constant.
+    reference: [f32; 2],
     motions: Motions,
     /// The surface in each field, in this frame and in the last one.
     surfaces: Vec<[usize; 2]>,
@@ -79,44 +77,50 @@ fn inked(n: &mut Numbers) -> Vec<[f32; 4]> {
     let fields: Vec<bool> = (0..SIZE[0] * SIZE[1] / (INK * INK))
         .map(|_| n.once_in(2))
         .collect();
-    pixels()
-        .map(|[x, y]| {
-            let is_inked = fields[(y / INK * (SIZE[0] / INK) + x / INK) as usize];
-            let [a, b, c] = [0; 3].map(|_| if is_inked { n.part() } else { 0.0 });
-            [a, b, c, (16.0 * n.part()).floor() / 16.0]
-        })
-        .collect()
+    let ink = |[x, y]: At| {
+        let is_inked = fields[(y / INK * (SIZE[0] / INK) + x / INK) as usize];
+        let [a, b, c] = [0; 3].map(|_| if is_inked { n.part() } else { 0.0 });
+        [a, b, c, (16.0 * n.part()).floor() / 16.0]
+    };
+    pixels().map(ink).collect()
 }
 
 impl Scene {
-    fn new(n: &mut Numbers, scale: i64, spacing: i64, share: f32, motions: Motions) -> Self {
+    fn new(n: &mut Numbers, [scale, spacing]: [i64; 2], share: f32, motions: Motions) -> Self {
         let all = [0, 1, 2, 3, 4, 5];
         let ink = inked(n);
-        let others = inked(n);
+        let mut past_ink = inked(n);
+        for (past, now) in past_ink.iter_mut().zip(&ink) {
+            if n.once_in(2) {
+                *past = *now;
+            }
+        }
+        let surfaces = (0..50).map(|_| {
+            let now = pick(n, &all);
+            [now, if n.once_in(2) { now } else { pick(n, &all) }]
+        });
+        let surfaces = surfaces.collect();
+        let counts = pixels().map(|_| {
+            [
+                pick(n, &[0.0, 1.0, 7.0, 8.0, 40.0, 127.0, 128.0]),
+                pick(n, &[0.0, 1.0, 15.0, 16.0]),
+                pick(n, &[0.0, 1.0, 16.0, 17.0, 32.0, 33.0, 48.0]),
+            ]
+        });
         Self {
             scale,
             spacing,
             share,
+            reference: if share == 0.25 {
+                [0.0, 0.5]
+            } else {
+                [1.0, 0.0]
+            },
             motions,
-            surfaces: (0..50)
-                .map(|_| {
-                    let now = pick(n, &all);
-                    [now, if n.once_in(2) { now } else { pick(n, &all) }]
-                })
-                .collect(),
-            past_ink: (ink.iter().zip(others))
-                .map(|(ink, other)| if n.once_in(2) { *ink } else { other })
-                .collect(),
+            surfaces,
+            counts: counts.collect(),
             ink,
-            counts: pixels()
-                .map(|_| {
-                    [
-                        pick(n, &[0.0, 1.0, 7.0, 8.0, 40.0, 127.0, 128.0]),
-                        pick(n, &[0.0, 1.0, 15.0, 16.0]),
-                        pick(n, &[0.0, 1.0, 16.0, 17.0, 32.0, 33.0, 48.0]),
-                    ]
-                })
-                .collect(),
+            past_ink,
         }
     }
 
@@ -134,34 +138,26 @@ impl Scene {
 
     /// What the shader makes of all pixels: ink and slot; then depth and counts.
     fn found(&self) -> Vec<[[f32; 4]; 2]> {
-        let size = SIZE.map(|k| k as u32);
         let whole = [0, 1].map(|k| SIZE[k] * self.scale + ORIGIN[k] + 1);
         let surfaces: Vec<usize> = (0..whole[1])
             .flat_map(|y| (0..whole[0]).map(move |x| [x - ORIGIN[0], y - ORIGIN[1]]))
             .map(|at| self.surface(at))
             .collect();
         let depths: Vec<f32> = surfaces.iter().map(|s| DEPTHS[*s]).collect();
-        let motion: Vec<[f32; 4]> = (surfaces.iter())
-            .map(|s| {
-                let [x, y] = self.motions[*s];
-                [x / SIZE[0] as f32, y / SIZE[1] as f32, 9.0, 9.0]
-            })
-            .collect();
-        let past: Vec<[f32; 4]> = pixels()
-            .map(|at| {
-                let [frames, missing, unsteady] = self.counts[index(at)];
-                let packed = frames + 256.0 * (missing + 32.0 * unsteady);
-                [self.past_depth(at), packed, 9.0, 9.0]
-            })
-            .collect();
-        let whole = whole.map(|k| k as u32);
+        let motion = surfaces.iter().map(|s| {
+            let [x, y] = self.motions[*s];
+            [x / SIZE[0] as f32, y / SIZE[1] as f32, 9.0, 9.0]
+        });
+        let past = pixels().map(|at| {
+            let [frames, missing, unsteady] = self.counts[index(at)];
+            let packed = frames + 256.0 * (missing + 32.0 * unsteady);
+            [self.past_depth(at), packed, 9.0, 9.0]
+        });
+        let [size, whole] = [SIZE, whole].map(|size| size.map(|k| k as u32));
         let depth = floats(whole, &depths);
-        let [motion, ink, past_ink, past] = [
-            gpu().texture(whole, &motion),
-            gpu().texture(size, &self.ink),
-            gpu().texture(size, &self.past_ink),
-            gpu().texture(size, &past),
-        ];
+        let motion = gpu().texture(whole, &motion.collect::<Vec<_>>());
+        let past = gpu().texture(size, &past.collect::<Vec<_>>());
+        let [ink, past_ink] = [&self.ink, &self.past_ink].map(|ink| gpu().texture(size, ink));
         let entries = [
             texture(2, &depth),
             texture(23, &ink),
@@ -175,20 +171,13 @@ impl Scene {
         let source = without_stage(&shader("lines/memory/remember.wgsl"));
         let definitions = [("DEPTH", None)];
         let results = gpu().evaluate_bound(&definitions, &entries, &source, &self.body(), &rows);
-        results
-            .chunks_exact(2)
-            .map(|two| [two[0], two[1]])
-            .collect()
+        results.as_chunks::<2>().0.to_vec()
     }
 
     /// Positions of the grid are a quarter of a pixel away from those of the viewport.
     fn body(&self) -> String {
-        let Self {
-            scale,
-            spacing,
-            share,
-            ..
-        } = self;
+        let (scale, spacing, share) = (self.scale, self.spacing, self.share);
+        let [factor, constant] = self.reference;
         let [width, height] = SIZE;
         let [left, top] = ORIGIN;
         format!(
@@ -198,7 +187,8 @@ impl Scene {
              line_pass.memory.spacing = {spacing};
              line_pass.memory.share = {share:?};
              line_pass.settings.jump = 0.25;
-             line_pass.settings.reference_factor = 1.0;
+             line_pass.settings.reference_factor = {factor:?};
+             line_pass.settings.reference_constant = {constant:?};
              let found = remember(vec4(i(0u) + 0.5, i(1u) + 0.5, 0.0, 1.0));
              if i(2u) == 0.0 {{ return found.ink; }}
              return vec4(found.nearest, 0.0, 0.0);"
@@ -255,8 +245,7 @@ fn is_doubtful(pixel: &Pixel) -> bool {
     })
 }
 
-/// Compares all pixels of a scene. Adds how many were covered, uncovered, limited, not seen in the
-/// last frame and not steady, and in how many something had vanished.
+/// Compares all pixels of a scene. Counts those where each of six things happened.
 fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
     let mut doubtful = 0;
     for (at, [inks, depths]) in pixels().zip(scene.found()) {
@@ -265,7 +254,8 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
             doubtful += 1;
             continue;
         }
-        let memory = pixel.remembered(jump);
+        let [factor, constant] = scene.reference.map(f64::from);
+        let memory = pixel.remembered(|depth| 0.25 * (factor * depth + constant));
         let what = format!("{at:?}: {pixel:?}, {memory:?}");
         for (stored, want) in inks.into_iter().zip(memory.ink) {
             let found = 1.0 - (1.0 - f64::from(stored)).powi(2);
@@ -282,35 +272,35 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
         let count = frames.floor() + 256.0 * (missing + 32.0 * unsteady);
         let found = [depths[0], depths[1]].map(f64::from);
         assert_eq!(found, [pixel.nearest, count], "{what}");
-        add(tally, &pixel, &memory);
+        let happened = [
+            memory.covered,
+            memory.uncovered,
+            memory.vanished,
+            memory.limited,
+            !pixel.seen,
+            unsteady > 32.0,
+        ];
+        for (count, is) in tally.iter_mut().zip(happened) {
+            *count += u32::from(is);
+        }
     }
     assert!(doubtful < 40, "{doubtful}");
 }
 
-fn add(tally: &mut [u32; 6], pixel: &Pixel, memory: &Memory) {
-    let changes = memory.changes;
-    let all = [
-        changes.covered,
-        changes.uncovered,
-        changes.vanished,
-        memory.limited,
-        !pixel.seen,
-        memory.counts[2] > 32.0,
-    ];
-    for (count, is) in tally.iter_mut().zip(all) {
-        *count += u32::from(is);
-    }
-}
-
-/// Views that stand still, drift, and move; with grids that are as fine as the picture and finer; and
-/// without memory.
+/// Views that stand still, drift, and move; with grids that are as fine as the picture and finer;
+/// with jumps as in perspective and in an orthographic view; and without memory.
 #[test]
 fn remembered_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
     let mut tally = [0; 6];
     for motions in [STILL, SLOW, MOVING] {
-        for (scale, spacing, share) in [(1, 1, 0.125), (1, 2, 0.25), (2, 3, 0.125), (1, 1, 1.0)] {
-            let scene = Scene::new(&mut n, scale, spacing, share, motions);
+        for (grid, share) in [
+            ([1, 1], 0.125),
+            ([1, 2], 0.25),
+            ([2, 3], 0.125),
+            ([1, 1], 1.0),
+        ] {
+            let scene = Scene::new(&mut n, grid, share, motions);
             assert_matches_the_reference(&scene, &mut tally);
         }
     }

@@ -156,26 +156,21 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         bend: [0.0; 2],
         shifts: true,
     };
-    let limit = |limit: f32| {
-        if s.hysteresis > 0.0 {
-            f64::from(limit)
-        } else {
-            0.0
-        }
-    };
-    if let Some(k) = s
-        .silhouettes
-        .filter(|k| k.equations == Equations::Corrected)
-    {
+    // Without continued lines, every crack is one by itself.
+    let continues = s.hysteresis > 0.0;
+    let is_certain = |p: f64, limit: f32| !continues || p >= f64::from(limit);
+    let silhouettes = (s.silhouettes).filter(|k| k.equations == Equations::Corrected);
+    let creases = s.creases.filter(|k| k.equations == Equations::Corrected);
+    if let Some(k) = silhouettes {
         let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         if near > 0.0 && is_stored(amount) && !is_outdone(depths) {
             crack.kinds[0] = true;
             crack.ink = amount;
-            crack.certain = p >= limit(k.edge_limit);
+            crack.certain = is_certain(p, k.edge_limit);
         }
     }
-    if let Some(k) = s.creases.filter(|k| k.equations == Equations::Corrected) {
+    if let Some(k) = creases {
         let normals = along(view, pixel, v, |x, y| normal(view, x, y));
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
@@ -191,7 +186,7 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         if drawn && excess < jump && is_stored(amount) && !crack.kinds[0] {
             crack.kinds[1] = true;
             crack.ink = amount;
-            crack.certain = ridge && p >= limit(k.edge_limit);
+            crack.certain = ridge && is_certain(p, k.edge_limit);
         }
     }
     if let (Some(_), Some(ids)) = (s.objects, view.ids) {
@@ -200,12 +195,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         crack.kinds[2] = objects[2] != objects[3];
         crack.certain |= crack.kinds[2];
     }
-    let low = s
-        .creases
-        .is_some_and(|c| c.equations == Equations::Corrected)
-        && s.hysteresis > 0.0;
-    let exists = here.min(there) > 0.0 && crack.kinds == [false; 3];
-    if low && exists && is_ledge(excess, jump) && !is_outdone(depths) {
+    let is_free = here.min(there) > 0.0 && crack.kinds == [false; 3];
+    let may_join = creases.is_some() && continues && is_free;
+    if may_join && is_ledge(excess, jump) && !is_outdone(depths) {
         crack.kinds[1] = true;
         crack.ink = 1.0;
         crack.ledge = true;
@@ -215,11 +207,8 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
     crack.opacity = 1.0 - f64::from(s.opacity_fade) * d;
     let half_width = 0.5 * f64::from(s.width) * scale;
     let half_width = half_width * (1.0 - f64::from(s.width_fade) * d);
-    let amount = if crack.kinds[0] || crack.kinds[1] {
-        crack.ink
-    } else {
-        1.0
-    };
+    let is_soft = crack.kinds[0] || crack.kinds[1];
+    let amount = if is_soft { crack.ink } else { 1.0 };
     let [ink, half_width] = respond(s.response, amount, half_width, crack.kinds[2]);
     crack.ink = ink;
     crack.half_width = stored_width(half_width);

@@ -82,10 +82,9 @@ impl Cracks {
         let counts = |crack: &Crack| s.gap_closing == 0 || !crack.ledge;
         let sources = all.iter().filter(|(_, crack)| counts(crack));
         let sources = sources.map(|(place, crack)| (*place, *crack)).collect();
-        let specks = if s.min_length < 2 {
-            1
-        } else {
-            (f64::from(s.min_length) * scale).ceil().min(64.0) as u32
+        let specks = match s.min_length {
+            ..2 => 1,
+            least => (f64::from(least) * scale).ceil().min(64.0) as u32,
         };
         let linked = found.complete((&all, &sources), (steps, specks, s), (view, jump(s)));
         let longest = if s.smooth {
@@ -110,7 +109,7 @@ impl Cracks {
         stroke: f64,
         (linked, all): (&HashSet<Place>, &HashMap<Place, Crack>),
     ) {
-        let (width, height) = (self.width, self.height);
+        let [width, height] = [self.width, self.height];
         let taper = self.taper;
         let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
         let w = &s.weight;
@@ -129,8 +128,8 @@ impl Cracks {
                 let at = [x0 + x, y0 + y];
                 let mut factor = local_weight(s, view, &crack, at, side);
                 if taper > 0.0 {
-                    let size = [width, height];
-                    let ends = cracks_to_ends(&lines, (pixel, side), size, taper.max(stroke));
+                    let most = taper.max(stroke);
+                    let ends = cracks_to_ends(&lines, (pixel, side), [width, height], most);
                     let stroke = stroke.min((ends[0] + ends[1] + 1) as f64);
                     factor *= taper_weight(taper, ends[0].min(ends[1]) as f64 + stroke);
                 }
@@ -163,29 +162,26 @@ impl Cracks {
         (view, jump): (&View, f64),
     ) -> HashSet<Place> {
         let width = self.width;
-        let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
         let mut linked = joined(&linked(all, steps), all);
         let closed = gaps(&linked, s.gap_closing);
         linked.extend(&closed);
         let kept = without_specks(&linked, [self.width, self.height], specks);
+        let links = s.hysteresis > 0.0 || s.min_length > 1 || s.gap_closing > 0;
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
-            for (side, crack) in cracks.iter_mut().enumerate() {
-                if closed.contains(&place(i, side)) {
-                    let near = || sources[&source(sources, place(i, side))];
-                    *crack = Some(all.get(&place(i, side)).copied().unwrap_or_else(near));
+            for (side, slot) in cracks.iter_mut().enumerate() {
+                let place = ([i as i64 % width, i as i64 / width], side);
+                if closed.contains(&place) {
+                    let near = || sources[&source(sources, place)];
+                    *slot = Some(all.get(&place).copied().unwrap_or_else(near));
                 }
-                *crack = crack.filter(|_| kept.contains(&place(i, side)));
-                if let Some(crack) = crack.as_mut() {
-                    let place = place(i, side);
-                    let at = source(sources, place);
-                    let links = s.hysteresis > 0.0 || s.min_length > 1 || s.gap_closing > 0;
-                    if links && !crack.kinds[0] && is_rim((all, &linked), place, (view, jump), at) {
-                        crack.kinds = [true, false, crack.kinds[2]];
-                        crack.shifts = true;
-                    }
+                *slot = slot.filter(|_| kept.contains(&place));
+                let Some(crack) = slot else { continue };
+                let at = source(sources, place);
+                if links && !crack.kinds[0] && is_rim((all, &linked), place, (view, jump), at) {
+                    crack.kinds = [true, false, crack.kinds[2]];
+                    crack.shifts = true;
                 }
-                if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
-                    let place = place(i, side);
+                if self.smooth {
                     let run = bend(&linked, place);
                     let fold = || placed((view, jump), &linked, place, run);
                     let fold = crack.kinds[1].then(fold).flatten();
@@ -278,19 +274,19 @@ fn ink_of_lines(mut lines: Vec<Line>, (at, on): ([f64; 2], &Spot), nudge: f64) -
         larger(found, ink_of(crack, nudge, covered))
     });
     let straight = straight(&mut lines, (at, on), nudge);
-    let straight: Vec<[f64; 3]> = (straight.into_iter())
-        .map(|(ink, left)| larger(found, ink).map(|ink| ink * left))
-        .collect();
+    let mut straight =
+        (straight.into_iter()).map(|(ink, left)| larger(found, ink).map(|ink| ink * left));
     // Which of two lines at the same distance is the nearest is a matter of rounding.
-    let sums = straight.iter().map(|ink| ink.iter().sum::<f64>());
+    let sum = |ink: &[f64; 3]| ink.iter().sum::<f64>();
+    let by_sum = |a: &[f64; 3], b: &[f64; 3]| sum(a).total_cmp(&sum(b));
     let chosen = if nudge > 0.0 {
-        sums.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+        straight.max_by(by_sum)
     } else if nudge < 0.0 {
-        sums.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+        straight.min_by(by_sum)
     } else {
-        sums.enumerate().next()
+        straight.next()
     };
-    chosen.map_or(found, |(i, _)| straight[i])
+    chosen.unwrap_or(found)
 }
 
 /// A line: the distance from its border, its middle, and its crack.
@@ -342,12 +338,8 @@ pub(super) fn ink_of(crack: &Crack, nudge: f64, covered: f64) -> [f64; 3] {
 /// A value in eight bits. Within 0.02 codes of a tie, the sign of `nudge` selects the
 /// code.
 fn stored(value: f64, nudge: f64) -> f64 {
-    let undecided = if nudge == 0.0 {
-        0.0
-    } else {
-        0.02 * nudge.signum()
-    };
-    stored_byte(value.clamp(0.0, 1.0) + undecided / 255.0)
+    let sign = if nudge == 0.0 { 0.0 } else { nudge.signum() };
+    stored_byte(value.clamp(0.0, 1.0) + 0.02 * sign / 255.0)
 }
 
 /// The ink of every pixel of a viewport, as it is stored.
@@ -398,23 +390,21 @@ impl Ink {
     pub fn texel(&self, x: i64, y: i64, nudge: f64) -> [f64; 3] {
         let x = x.clamp(0, self.width - 1);
         let y = y.clamp(0, self.height - 1);
-        let which = if nudge == 0.0 {
-            1
-        } else if nudge < 0.0 {
-            0
-        } else {
-            2
-        };
-        self.pixels[(y * self.width + x) as usize][which]
+        let [down, exact, up] = self.pixels[(y * self.width + x) as usize];
+        match nudge {
+            0.0 => exact,
+            ..0.0 => down,
+            _ => up,
+        }
     }
 }
 
 /// Ink as it is stored: steps are finest where little light is left.
-pub fn encoded(ink: f64) -> f64 {
+fn encoded(ink: f64) -> f64 {
     1.0 - (1.0 - ink.clamp(0.0, 1.0)).sqrt()
 }
 
 /// The inverse of [`encoded`].
-pub fn decoded(stored: f64) -> f64 {
+fn decoded(stored: f64) -> f64 {
     1.0 - (1.0 - stored) * (1.0 - stored)
 }

@@ -3,6 +3,8 @@
 
 use std::collections::HashSet;
 
+use bevy::math::{DMat3, DVec3};
+
 use super::{
     chain::follow,
     coverage::segment_coverage,
@@ -25,33 +27,19 @@ pub struct Stroke {
 
 /// The direction in which a line leaves the first of these middles, away from the others: that
 /// of the derivative of the parabola through them, by the normal equations.
-pub fn end_direction(middles: &[[f64; 2]]) -> [f64; 2] {
+fn end_direction(middles: &[[f64; 2]]) -> [f64; 2] {
     let n = middles.len();
     if n < 3 {
         return [0, 1].map(|axis| middles[0][axis] - middles[n - 1][axis]);
     }
     // Sums of powers of the index, and of these times the middles.
-    let power = |k: i32| (0..n).map(|i| (i as f64).powi(k)).sum::<f64>();
-    let s: [f64; 5] = std::array::from_fn(|k| power(k as i32));
+    let powers = |i: usize| [0, 1, 2, 3, 4].map(|k| (i as f64).powi(k));
+    let sum = |k: usize| (0..n).map(|i| powers(i)[k]).sum::<f64>();
+    let sums = DMat3::from_cols_array_2d(&[0, 1, 2].map(|i| [0, 1, 2].map(|j| sum(i + j))));
     [0, 1].map(|axis| {
-        let moment = |k: i32| {
-            let terms = middles.iter().enumerate();
-            terms
-                .map(|(i, m)| (i as f64).powi(k) * m[axis])
-                .sum::<f64>()
-        };
-        let t = [moment(0), moment(1), moment(2)];
-        // Cramer's rule for the linear coefficient.
-        let rows = |column: Option<[f64; 3]>| {
-            let m = |i: usize, j: usize| match column {
-                Some(column) if j == 1 => column[i],
-                _ => s[i + j],
-            };
-            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1))
-                - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
-                + m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0))
-        };
-        -rows(Some(t)) / rows(None)
+        let moment = |k: usize| (0..n).map(|i| powers(i)[k] * middles[i][axis]).sum::<f64>();
+        let moments = DVec3::from_array([0, 1, 2].map(moment));
+        -(sums.inverse() * moments).y
     })
 }
 

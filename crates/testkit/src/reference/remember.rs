@@ -1,13 +1,7 @@
-//! Reference of `lines/memory/remember.wgsl`: ink that remembers the frames before.
+//! Reference of `lines/remember.wgsl` and `lines/memory.wgsl`: ink that remembers the frames
+//! before.
 
-use super::{
-    Rgb,
-    edge::is_in_front,
-    memory::{
-        cubic_weights, frames_at, is_limited, is_steady, missing_at, remembered, share_at,
-        unsteady_at,
-    },
-};
+use super::{Rgb, edge::is_in_front};
 
 /// A place in pixels.
 pub type At = [i64; 2];
@@ -22,6 +16,22 @@ pub fn square(centre: At, reach: i64, spacing: i64) -> impl Iterator<Item = At> 
     (-reach..=reach).flat_map(move |y| {
         (-reach..=reach).map(move |x| [centre[0] + spacing * x, centre[1] + spacing * y])
     })
+}
+
+/// Weights of four texels at a fraction from the second one: the cubic polynomials whose values
+/// and slopes at the inner two are those of Catmull and Rom (1974).
+fn cubic_weights(f: f64) -> [f64; 4] {
+    // Hermite's basis.
+    let start = (1.0 - f).powi(2) * (1.0 + 2.0 * f);
+    let end = f * f * (3.0 - 2.0 * f);
+    let leaving = f * (1.0 - f).powi(2);
+    let arriving = f * f * (f - 1.0);
+    [
+        -0.5 * leaving,
+        start - 0.5 * arriving,
+        end + 0.5 * leaving,
+        0.5 * arriving,
+    ]
 }
 
 /// Ink of the last frame at a place: bicubic between the centres of pixels.
@@ -71,24 +81,17 @@ pub struct Pixel {
     pub share: f64,
 }
 
-/// What has happened to a surface since the last frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Changes {
-    /// Something else has come before it.
-    pub covered: bool,
-    /// What was before it has gone.
-    pub uncovered: bool,
-    /// What was around it has gone.
-    pub vanished: bool,
-}
-
 /// What is remembered of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
     pub ink: Rgb,
     /// Frames, frames with missing lines, and how unsteady the surface is.
     pub counts: [f64; 3],
-    pub changes: Changes,
+    /// Whether something else has come before the surface, what was before it has gone, and what
+    /// was around it has gone.
+    pub covered: bool,
+    pub uncovered: bool,
+    pub vanished: bool,
     /// Whether the memory was limited to the ink nearby.
     pub limited: bool,
 }
@@ -97,16 +100,6 @@ pub struct Memory {
 pub const ROUNDING: f64 = 0.01;
 
 impl Pixel {
-    /// `jump`: the difference that separates two surfaces at a raw depth.
-    fn changes(&self, jump: impl Fn(f64) -> f64) -> Changes {
-        let before = |near: f64, far: f64| is_in_front(near, far, jump(near));
-        Changes {
-            covered: before(self.nearest, self.past_wide),
-            uncovered: before(self.past_nearest, self.wide),
-            vanished: before(self.past_wide, self.wide),
-        }
-    }
-
     /// Whether the ink of the last frame is not between the least and the most nearby.
     fn is_missing(&self) -> bool {
         (0..3).any(|k| {
@@ -114,38 +107,53 @@ impl Pixel {
         })
     }
 
-    /// The ink with its memory.
+    /// The ink with its memory. `jump`: the difference that separates two surfaces at a raw depth.
     pub fn remembered(&self, jump: impl Fn(f64) -> f64) -> Memory {
+        let before = |near: f64, far: f64| is_in_front(near, far, jump(near));
+        let covered = before(self.nearest, self.past_wide);
+        let uncovered = before(self.past_nearest, self.wide);
+        let vanished = before(self.past_wide, self.wide);
         let exists = self.seen && self.share < 1.0;
         let [frames, missing, unsteady] = if exists { self.counts } else { [0.0; 3] };
-        let changes = self.changes(jump);
-        let changed = changes.covered || changes.uncovered || changes.vanished;
-        let unsteady = unsteady_at(unsteady, changed, self.speed);
-        let steady = is_steady(unsteady);
+        let moves = self.speed > 0.05;
+        let unsteady = if moves {
+            0.0
+        } else if covered || uncovered || vanished {
+            (unsteady + 16.0).min(48.0)
+        } else {
+            (unsteady - 1.0).max(0.0)
+        };
+        let steady = unsteady <= 32.0;
         // What is behind something that has gone was not seen before.
-        let [frames, missing] = if changes.uncovered && steady {
+        let [frames, missing] = if uncovered && steady {
             [0.0; 2]
         } else {
             [frames, missing]
         };
-        let frames = frames_at(frames, self.share, self.speed);
-        let missing = missing_at(missing, self.is_missing());
-        let is_sky = self.wide <= 0.0;
-        let ends = changes.covered || changes.vanished || is_sky;
-        let limited = is_limited(missing, self.speed) || (steady && ends);
+        let frames = f64::min(frames + 1.0, if moves { 1.0 / self.share } else { 128.0 });
+        let missing = if self.is_missing() {
+            missing + 1.0
+        } else {
+            0.0
+        };
+        let ends = covered || vanished || self.wide <= 0.0;
+        // In motion, or after two rounds of eight offsets.
+        let limited = missing > 16.0 || moves || (steady && ends);
+        let share = (1.0 / frames.max(1.0) + self.speed / 4.0).min(1.0);
         let ink = std::array::from_fn(|k| {
-            let nearby = if limited {
-                [self.least[k], self.most[k]]
+            let kept = if limited {
+                self.past[k].max(self.least[k]).min(self.most[k])
             } else {
-                [0.0, 1.0]
+                self.past[k].clamp(0.0, 1.0)
             };
-            let share = share_at(frames, self.speed);
-            remembered(self.past[k], self.now[k], nearby, share)
+            kept * (1.0 - share) + self.now[k] * share
         });
         Memory {
             ink,
             counts: [frames, if limited { 0.0 } else { missing }, unsteady],
-            changes,
+            covered,
+            uncovered,
+            vanished,
             limited,
         }
     }

@@ -99,38 +99,3 @@ impl Resolved {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_sample_is_that_of_largest_raw_depth() {
-        assert_eq!(nearest_sample(&[0.0; 4]), 0);
-        assert_eq!(nearest_sample(&[0.0, 0.5, 0.25, 0.5]), 1);
-        assert_eq!(nearest_sample(&[0.1, 0.2, 0.3, 0.4]), 3);
-        assert_eq!(nearest_sample(&[0.7]), 0);
-    }
-
-    /// Over a plane, the same sample is the nearest in every pixel: the plane keeps its
-    /// slope, so it gets no lines.
-    #[test]
-    fn a_plane_stays_a_plane() {
-        for slope in [[0.0, 1e-3], [2e-3, -1e-3], [-3e-3, -4e-3], [1e-4, 0.0]] {
-            let chosen: Vec<usize> = (0..64)
-                .map(|i| {
-                    let pixel = [i % 8, i / 8].map(f64::from);
-                    let depths = STANDARD_4.map(|at| {
-                        let place = [0, 1].map(|k| pixel[k] + f64::from(at[k]) / 16.0);
-                        (0.5 + slope[0] * place[0] + slope[1] * place[1]) as f32
-                    });
-                    nearest_sample(&depths)
-                })
-                .collect();
-            assert!(
-                chosen.iter().all(|s| *s == chosen[0]),
-                "{slope:?}: {chosen:?}"
-            );
-        }
-    }
-}
