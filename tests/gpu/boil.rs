@@ -1,6 +1,7 @@
 //! Lines that are drawn again several times a second.
 
 use crate::{
+    line_scenes::runs,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -100,13 +101,8 @@ fn wide_lines_stray_less() {
 fn drawings_change_at_their_rate() {
     let mut small = edge();
     let mut drawings = |rate: f32| {
-        let mut pictures = vec![small.outlined(boiling(2.0, rate))];
-        for _ in 0..12 {
-            small.headless.step(1);
-            pictures.push(small.picture());
-        }
-        pictures.dedup();
-        pictures.len()
+        small.outlined(boiling(2.0, rate));
+        runs(&small.film(13)).len()
     };
     assert_eq!(drawings(0.0), 1);
     let [many, few] = [60.0, 6.0].map(drawings);

@@ -6,7 +6,7 @@ use bevy::world_serialization::WorldAssetRoot;
 use serde_json::json;
 
 use crate::{
-    ids::{cube, material, put_two_cubes, seam, total, two_cubes},
+    ids::{cube, edge, material, put_two_cubes, seam, total, two_cubes},
     line_scenes::id_of,
     outlines::ink,
     prelude::*,
@@ -14,13 +14,6 @@ use crate::{
 
 /// The width of the pictures.
 const WIDTH: usize = 120;
-
-/// The weakest row of the strongest ink near a column.
-fn edge(ink: &[f32], column: usize) -> f32 {
-    let row = |y: usize| &ink[y * WIDTH..][column - 3..column + 3];
-    let strongest = |y| row(y).iter().copied().fold(0.0, f32::max);
-    (25..35).map(strongest).fold(1.0, f32::min)
-}
 
 /// The strongest ink between the cubes, away from their outlines.
 fn inside(ink: &[f32]) -> f32 {
@@ -67,13 +60,16 @@ fn a_group_has_no_object_edge_inside_and_one_against_others() {
         assert_one(&mut small, "grouped");
         // The third cube begins at x = 1: 42.6 pixels right of the middle.
         let grouped = lines(&mut small);
-        assert!(edge(&grouped, 103) > 0.9, "against an object outside");
+        assert!(edge(&grouped, 100..106) > 0.9, "against an object outside");
         let found = [50, 70, 110].map(|x| id_at(&small, x));
         assert_eq!(found, [root, root, other].map(id_of), "{msaa:?}");
 
         // Two groups are two objects.
         group(&mut small, &[other]);
-        assert!(edge(&lines(&mut small), 103) > 0.9, "against another group");
+        assert!(
+            edge(&lines(&mut small), 100..106) > 0.9,
+            "against another group"
+        );
         assert_eq!(small.errors(), 0);
     }
 }
@@ -221,7 +217,7 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
     let root = small.world().spawn((Object, scene)).id();
     let meshes = load(&mut small, 3);
     assert_one(&mut small, "primitives");
-    let is_apart = |small: &mut Small| edge(&lines(small), 103) > 0.9;
+    let is_apart = |small: &mut Small| edge(&lines(small), 100..106) > 0.9;
     assert!(is_apart(&mut small), "another node is another object");
     let id = id_at(&small, 50);
     assert_eq!(id, id_at(&small, 70));
@@ -247,7 +243,7 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
     // A group on the root joins the nodes too.
     small.on(root).insert(OutlineGroup);
     assert_one(&mut small, "a group on the root");
-    assert!(edge(&lines(&mut small), 103) < 0.02);
+    assert!(edge(&lines(&mut small), 100..106) < 0.02);
     small.on(root).remove::<OutlineGroup>();
     assert!(is_apart(&mut small));
     assert_eq!(small.errors(), 0);

@@ -46,7 +46,7 @@ pub fn put_two_cubes(small: &mut Small, msaa: Msaa) -> [Entity; 2] {
 }
 
 /// The weakest row of the strongest ink in columns.
-fn edge(ink: &[f32], columns: Range<usize>) -> f32 {
+pub fn edge(ink: &[f32], columns: Range<usize>) -> f32 {
     let rows = (25..35).map(|y| &ink[y * 120..][columns.clone()]);
     rows.map(|row| row.iter().copied().fold(0.0, f32::max))
         .fold(1.0, f32::min)

@@ -3,7 +3,7 @@
 use bevy_comics::{Impact, ReduceFlashing, diagnostics::ImpactCounts};
 use image::RgbaImage;
 
-use crate::prelude::*;
+use crate::{line_scenes::runs, prelude::*};
 
 fn small() -> Small {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
@@ -32,21 +32,6 @@ fn counts(small: &Small) -> Option<ImpactCounts> {
     counts_of(small, small.camera)
 }
 
-/// The pictures of the next frames.
-fn film(small: &mut Small, frames: usize) -> Vec<RgbaImage> {
-    let frames = (0..frames).map(|_| {
-        small.headless.step(1);
-        small.picture()
-    });
-    frames.collect()
-}
-
-/// How often a picture is shown in a row, and the next one, and so on.
-fn runs(film: &[RgbaImage]) -> Vec<usize> {
-    let runs = film.chunk_by(|a, b| a == b);
-    runs.map(<[RgbaImage]>::len).collect()
-}
-
 /// Black and white, and no colours, unlike the scene.
 fn is_two_tone(picture: &RgbaImage) -> bool {
     let grey = |p: &image::Rgba<u8>| p.0[0] == p.0[1] && p.0[1] == p.0[2];
@@ -61,7 +46,7 @@ fn an_impact_is_two_drawings_and_then_nothing() {
     let mut small = small();
     let before = small.picture();
     trigger(&mut small, |_| {});
-    let film = film(&mut small, 20);
+    let film = small.film(20);
     assert_eq!(runs(&film), [5, 5, 10]);
     assert!(is_two_tone(&film[0]) && is_two_tone(&film[9]));
     assert_eq!(film[10], before);
@@ -85,7 +70,7 @@ fn a_style_comes_back() {
     small.insert((Outlines::default(), lines, tones)).settle();
     let before = small.picture();
     trigger(&mut small, |impact| impact.drawings = 1);
-    let film = film(&mut small, 12);
+    let film = small.film(12);
     assert_eq!(runs(&film), [5, 7]);
     let red = |p: &image::Rgba<u8>| p.0[0] > 150 && p.0[1] < 50;
     assert!(before.pixels().any(red) && !film[0].pixels().any(red));
@@ -104,7 +89,7 @@ fn tones_alternate() {
         impact.alternate = true;
         impact.lines = None;
     });
-    let film = film(&mut small, 18);
+    let film = small.film(18);
     assert_eq!(runs(&film), [5, 5, 5, 3]);
     assert_eq!(film[0], film[10]);
     for (a, b) in film[0].pixels().zip(film[5].pixels()) {
@@ -221,12 +206,12 @@ fn reduced_flashing_dims() {
             assert!((b[c] - 0.8 * a[c]).abs() < 0.009, "{a:?}, {b:?}");
         }
     }
-    let film = film(&mut small, 14);
+    let film = small.film(14);
     assert_eq!(runs(&film), [9, 5]);
     // Lines stand still.
     small.headless.step(60);
     trigger(&mut small, |_| {});
-    let film = self::film(&mut small, 15);
+    let film = small.film(15);
     assert_eq!(runs(&film), [10, 5]);
 }
 
@@ -237,7 +222,7 @@ fn a_pause_holds_the_impact() {
     trigger(&mut small, |_| {});
     small.headless.step(2);
     small.world().resource_mut::<Time<Virtual>>().pause();
-    let film = film(&mut small, 90);
+    let film = small.film(90);
     assert_eq!(runs(&film), [90]);
     assert!(is_two_tone(&film[0]));
     for _ in 0..4 {

@@ -28,6 +28,21 @@ impl Small {
         self.camera_settings().clear_color = sky.into();
     }
 
+    /// The pictures of the next frames.
+    pub fn film(&mut self, frames: usize) -> Vec<RgbaImage> {
+        let frames = (0..frames).map(|_| {
+            self.headless.step(1);
+            self.picture()
+        });
+        frames.collect()
+    }
+
+    /// Says that the camera has moved to another place.
+    pub fn cut(&mut self) {
+        let entity = self.camera;
+        self.world().trigger(CameraCut { entity });
+    }
+
     pub fn camera_settings(&mut self) -> Mut<'_, Camera> {
         let camera = self.camera;
         self.world().get_mut(camera).expect("a camera")
@@ -50,6 +65,12 @@ impl Small {
         let diagnostics = world.resource::<ComicsDiagnostics>();
         diagnostics.cameras.get(&self.camera)?.outcome(stage)
     }
+}
+
+/// How often a picture is shown in a row, and the next one, and so on.
+pub fn runs(film: &[RgbaImage]) -> Vec<usize> {
+    let runs = film.chunk_by(|a, b| a == b);
+    runs.map(<[RgbaImage]>::len).collect()
 }
 
 pub fn id_of(object: Entity) -> u32 {

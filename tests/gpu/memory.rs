@@ -225,8 +225,7 @@ fn lines_of_objects_that_vanish_leave_no_ghosts() {
 fn a_cut_forgets_lines() {
     let (mut small, _) = scene();
     outline(&mut small, 0.03125, 24);
-    let camera = small.camera;
-    small.world().trigger(CameraCut { entity: camera });
+    small.cut();
     small.insert(Transform::from_xyz(3.0, 1.0, 0.0));
     small.headless.step(1);
     let once = removed(&small);

@@ -205,8 +205,7 @@ fn they_begin_anew_at_a_jump_and_at_a_cut() {
         stage.dash(20);
         assert!(!stage.ink().is_empty());
         if what == "a cut" {
-            let camera = stage.small.camera;
-            stage.small.world().trigger(CameraCut { entity: camera });
+            stage.small.cut();
         }
         stage.fly(1, |_| place);
         stage.assert_bare(what);

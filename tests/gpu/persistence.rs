@@ -149,8 +149,7 @@ fn assert_stay_as_asked(numbers: &[u32]) {
             assert_eq!(step.stays(frames, height, speed), want, "{what}");
         }
         step.strong();
-        let camera = step.small.camera;
-        step.small.world().trigger(CameraCut { entity: camera });
+        step.small.cut();
         assert_eq!(step.stays(frames, WEAK, 0.0), 0, "after a cut");
         step.strong();
         step.style(1.9, asked);

@@ -5,7 +5,7 @@ use bevy_comics::SteppedAnimation;
 use image::RgbaImage;
 
 use crate::{
-    line_scenes::{mean, skinned},
+    line_scenes::{mean, runs, skinned},
     prelude::*,
     walls::towards_the_sky,
 };
@@ -53,15 +53,6 @@ fn square(small: &mut Small, y: f32, more: impl Bundle) -> Entity {
     small.on(square).insert(more).id()
 }
 
-/// The pictures of the next frames.
-fn film(small: &mut Small, frames: usize) -> Vec<RgbaImage> {
-    let frames = (0..frames).map(|_| {
-        small.headless.step(1);
-        small.picture()
-    });
-    frames.collect()
-}
-
 /// Centre of the white pixels of the rows, pixels from the left.
 fn place(picture: &RgbaImage, rows: Range<u32>) -> f64 {
     let white = (picture.enumerate_pixels())
@@ -83,7 +74,7 @@ fn a_pose_is_held_for_its_drawing() {
     let root = (held, Walks(60.0), SteppedAnimation::default());
     small.world().spawn(root).add_child(below);
     small.headless.step(10);
-    let film = film(&mut small, 30);
+    let film = small.film(30);
     let places = film.iter().map(|p| [place(p, 0..32), place(p, 32..64)]);
     let places: Vec<[f64; 2]> = places.collect();
     let lag = places
@@ -127,7 +118,7 @@ fn the_game_sees_the_truth() {
         for square in squares {
             small.on(square).remove::<SteppedAnimation>();
         }
-        (seen, film(&mut small, 3))
+        (seen, small.film(3))
     };
     let (held, free) = (run(true), run(false));
     assert_eq!(held.0, free.0);
@@ -209,13 +200,11 @@ fn skins_are_held() {
         small.headless.app.add_systems(Update, rise);
         put_strip(&mut small, held);
         small.headless.step(3);
-        film(&mut small, 20)
+        small.film(20)
     };
     let (free, held) = (run(false), run(true));
-    let moves = free.chunk_by(|a, b| a == b).count();
-    assert_eq!(moves, 20, "the free skin moves");
-    let runs = held.chunk_by(|a, b| a == b).map(<[RgbaImage]>::len);
-    let runs: Vec<usize> = runs.collect();
+    assert_eq!(runs(&free), [1; 20], "the free skin moves");
+    let runs = runs(&held);
     let are_short = runs.len() <= 5 && runs.iter().all(|run| *run <= 5);
     assert!(are_short, "{runs:?}");
     let mut frame = runs[0];
@@ -236,7 +225,7 @@ fn cameras_are_never_held() {
     let held = (parts, Walks(30.0), SteppedAnimation::default());
     small.world().spawn(held).add_children(&[camera, inner]);
     small.headless.step(10);
-    let places = film(&mut small, 12).into_iter().map(|picture| {
+    let places = small.film(12).into_iter().map(|picture| {
         // It rests relative to the camera.
         let inner = place(&picture, 50..64);
         assert!((inner - 96.0).abs() < 0.6, "{inner}");
