@@ -144,7 +144,7 @@ fn assert_lost(small: &Small, what: &str) {
 }
 
 /// The game decides.
-fn test(small: &mut Small, depth_test: ObjectIdDepthTest) {
+fn set_test(small: &mut Small, depth_test: ObjectIdDepthTest) {
     small.world().insert_resource(depth_test);
     small.settle();
 }
@@ -178,17 +178,17 @@ fn assert_tolerance_keeps_ids(msaa: Msaa) {
     // Each sample has an id of its own, with a tolerance too.
     let borders = mixed(&want);
     assert!((borders > 100) == (msaa != Msaa::Off), "{borders} pixels");
-    test(&mut small, ObjectIdDepthTest::Tolerant);
+    set_test(&mut small, ObjectIdDepthTest::Tolerant);
     assert_eq!(method(&small), TOLERANT);
     assert_complete(&small, &want, "a tolerance without need");
     for factor in NUDGES {
         nudge.set(&mut small, factor);
         let what = format!("{msaa:?}, {factor}");
         assert_complete(&small, &want, &what);
-        test(&mut small, ObjectIdDepthTest::Equal);
+        set_test(&mut small, ObjectIdDepthTest::Equal);
         assert_eq!(method(&small), None);
         assert_lost(&small, &what);
-        test(&mut small, ObjectIdDepthTest::Tolerant);
+        set_test(&mut small, ObjectIdDepthTest::Tolerant);
         assert_complete(&small, &want, &what);
         let found = mixed(&ids(&small));
         let off = found.abs_diff(borders);
@@ -237,7 +237,7 @@ fn assert_noticed_for_good(msaa: Msaa, frames: usize) {
         assert_eq!(method(&small), TOLERANT, "{msaa:?}");
     }
     assert_complete(&small, &want, "for good");
-    test(&mut small, ObjectIdDepthTest::Equal);
+    set_test(&mut small, ObjectIdDepthTest::Equal);
     assert_eq!(method(&small), None);
     assert_complete(&small, &want, "at equal depth again");
     assert_eq!(small.errors(), 0);

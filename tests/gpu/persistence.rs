@@ -70,24 +70,24 @@ impl Step {
         Self { small, front }
     }
 
-    /// Draws a frame with an upright object at a place, in front of the wall. Returns the ink of a
-    /// row. All rows have lines in the same columns.
-    fn draw(&mut self, object: Entity, x: f32, height: f32) -> Vec<f32> {
+    /// Draws a frame with an object at a place, in front of the wall. Returns the ink of all rows.
+    fn draw(&mut self, object: Entity, x: f32, height: f32) -> Vec<Vec<f32>> {
         let at = Transform::from_xyz(x, 0.0, -200.0 + height);
         self.small.on(object).insert(at);
         self.small.headless.step(1);
         let ink = removed(&self.small);
         let rows = ink.chunks_exact(SIZE.x as usize);
-        let inked = |row: &[f32]| row.iter().map(|ink| *ink > 0.1).collect::<Vec<bool>>();
-        let columns: HashSet<Vec<bool>> = rows.clone().map(inked).collect();
-        assert_eq!(columns.len(), 1, "{columns:?}");
-        rows.take(1).flatten().copied().collect()
+        rows.map(<[f32]>::to_vec).collect()
     }
 
-    /// Draws a frame with a step, the edge at a place. Returns the width of the line.
+    /// Draws a frame with a step, the edge at a place. Returns the width of the line. All rows have
+    /// it in the same columns.
     fn frame(&mut self, step: f32, x: f32) -> f32 {
-        let row = self.draw(self.front, x - 30.0, height(step));
-        row.into_iter().sum()
+        let rows = self.draw(self.front, x - 30.0, height(step));
+        let inked = |row: &Vec<f32>| row.iter().map(|ink| *ink > 0.1).collect::<Vec<bool>>();
+        let columns: HashSet<Vec<bool>> = rows.iter().map(inked).collect();
+        assert_eq!(columns.len(), 1, "{columns:?}");
+        rows[32].iter().sum()
     }
 
     fn style(&mut self, width: f32, hold_frames: u32) {
@@ -219,7 +219,7 @@ fn passing_lines_leave_no_trails() {
         for frame in 0..45 {
             // The left side of the bar, in pixels.
             let left = 8 + frame;
-            let ink = step.draw(bar, left as f32 - 49.0 + 3.0, height(3.0));
+            let ink = &step.draw(bar, left as f32 - 49.0 + 3.0, height(3.0))[32];
             let inked = (0..98).filter(|x| ink[*x] > 0.1);
             let behind: Vec<usize> = inked.filter(|x| *x + 2 < left).collect();
             if frame >= 10 {
