@@ -1,5 +1,7 @@
 //! Lines that crowd: how much of the picture they cover.
 
+use bevy_comics_testkit::forest;
+
 use crate::{
     line_scenes::silhouettes,
     prelude::*,
@@ -164,5 +166,62 @@ fn lone_lines_do_not_change() {
             let off = (found - f64::from(width)).abs();
             assert!(off < 0.02, "{width}, {budget}: {found}");
         }
+    }
+}
+
+/// The forest at 500 metres, white before a white sky, in a picture of 16:9.
+fn far_forest(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
+    small.empty_view(Msaa::Off, Color::WHITE);
+    let (at, fov) = forest::view();
+    let projection = PerspectiveProjection { fov, ..default() };
+    small.insert((at, Projection::Perspective(projection)));
+    let world = small.world();
+    let white = unlit(Color::WHITE);
+    let white = MeshMaterial3d(world.resource_mut::<Assets<StandardMaterial>>().add(white));
+    for (mut mesh, places) in forest::forest() {
+        mesh.remove_attribute(Mesh::ATTRIBUTE_COLOR);
+        let mesh = Mesh3d(world.resource_mut::<Assets<Mesh>>().add(mesh));
+        for at in places {
+            world.spawn((mesh.clone(), white.clone(), at));
+        }
+    }
+    small
+}
+
+/// A forest at 500 metres, whose trees are 4 to 25 pixels high, is a tone and no black bar: of
+/// each area of 32 x 32 pixels lines cover at most their budget; without it, they cover more than
+/// the default.
+#[test]
+#[ignore = "long: a large scene; `crowded_lines_keep_their_budget` has small ones"]
+fn a_forest_in_the_distance_is_no_black_bar() {
+    assert_no_black_bar(UVec2::new(320, 180), &[2.0, 3.0]);
+    assert_no_black_bar(UVec2::new(640, 360), &[2.0]);
+}
+
+fn assert_no_black_bar(size: UVec2, widths: &[f32]) {
+    let mut small = far_forest(size);
+    for &width in widths {
+        let found = [1.0, 0.35, 0.2].map(|ink_budget| {
+            let picture = small.outlined(Outlines {
+                width,
+                ink_budget,
+                ..default()
+            });
+            let areas = (0..size.y / 32).flat_map(|j| (0..size.x / 32).map(move |i| (i, j)));
+            let covered = areas.map(|(i, j)| {
+                let area = (0..32 * 32).map(|k| (32 * i + k % 32, 32 * j + k / 32));
+                black_ink(&picture, area) / (32.0 * 32.0)
+            });
+            let covered: Vec<f64> = covered.filter(|ink| *ink > 0.05).collect();
+            assert!(covered.len() > 8, "{covered:?}");
+            let most = covered.into_iter().fold(0.0, f64::max);
+            // The band of the test above.
+            let limit = 1.15 * f64::from(ink_budget);
+            assert!(ink_budget == 1.0 || most <= limit, "{ink_budget}: {most}");
+            most
+        });
+        assert!(found[0] > 0.35, "{found:?}");
+        assert_eq!(small.errors(), 0);
     }
 }
