@@ -1,7 +1,7 @@
 //! Lines that are drawn again several times a second.
 
 use crate::{
-    pictures::{assert_pass_matches_the_reference, outlined},
+    line_scenes::runs,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -18,26 +18,6 @@ fn boiling(amplitude: f32, rate: f32) -> Outlines {
         },
         ..Outlines::SILHOUETTES
     }
-}
-
-/// Every pixel, at widths for which all cracks around a pixel are searched. Wider lines are
-/// searched by columns, of which two cracks are kept: where two are as near to the middle of
-/// a pixel, rounding decides which the line of a displaced place is.
-#[test]
-fn boiling_lines_match_the_reference() {
-    let mut small = Small::new(SIZE, Msaa::Off);
-    for (width, amplitude) in [(1.0, 3.0), (2.0, 0.7), (2.0, 3.0)] {
-        let outlines = Outlines {
-            width,
-            silhouettes: Some(default()),
-            creases: Some(default()),
-            objects: Some(default()),
-            ..boiling(amplitude, 0.0)
-        };
-        let what = format!("{width} px, boiling by {amplitude} px");
-        assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
-    }
-    assert_eq!(small.errors(), 0);
 }
 
 /// An upright edge in the middle of the picture.
@@ -59,39 +39,34 @@ fn strays(picture: &image::RgbaImage) -> Vec<f64> {
     (0..SIZE.y).map(row).collect()
 }
 
+/// How far the line strays in any row.
+fn most(picture: &image::RgbaImage) -> f64 {
+    let strays = strays(picture).into_iter().map(f64::abs);
+    strays.fold(0.0, f64::max)
+}
+
 /// Truth: lines stray by at most the amplitude, and use much of it; they keep their ink,
 /// and are whole.
 #[test]
 fn lines_stray_by_their_amplitude() {
     let mut small = edge();
     for (amplitude, width) in [(0.5, 2.0), (1.5, 2.0), (3.0, 2.0), (1.5, 5.0)] {
-        let outlines = Outlines {
+        let picture = small.outlined(Outlines {
             width,
             ..boiling(amplitude, 0.0)
-        };
-        small.style(&ComicStyle::new().with(outlines));
-        small.settle();
-        let picture = small.picture();
-        let strays = strays(&picture);
-        let most = strays
-            .iter()
-            .fold(0.0f64, |most, stray| most.max(stray.abs()));
-        let amplitude = f64::from(amplitude);
+        });
+        let most = most(&picture);
+        let (amplitude, width) = (f64::from(amplitude), f64::from(width));
         assert!(most <= amplitude + 0.05, "{amplitude}: {most}");
         assert!(most > 0.4 * amplitude, "{amplitude}: {most}");
+        // Noise changes by up to 1.5 * 2 * amplitude over a wave of 20 pixels: lines are
+        // stretched across and lean by that much.
+        let change = 3.0 * amplitude / 20.0;
+        let least = width / (1.0 + change) - 0.1;
+        let most = width / (1.0 - change) * 1f64.hypot(change) + 0.1;
         for y in 0..SIZE.y {
             let ink = black_ink(&picture, (0..SIZE.x).map(|x| (x, y)));
-            // Noise changes by up to 1.5 * 2 * amplitude over a wave of 20 pixels: lines are
-            // stretched across and lean by that much.
-            let change = 3.0 * amplitude / 20.0;
-            let (least, most) = (
-                f64::from(width) / (1.0 + change),
-                f64::from(width) / (1.0 - change) * 1f64.hypot(change),
-            );
-            assert!(
-                (least - 0.1..most + 0.1).contains(&ink),
-                "{amplitude}, {y}: {ink}"
-            );
+            assert!((least..most).contains(&ink), "{amplitude}, {y}: {ink}");
         }
     }
 }
@@ -100,27 +75,23 @@ fn lines_stray_by_their_amplitude() {
 #[test]
 fn wide_lines_stray_less() {
     let mut small = edge();
-    for (width, outer, most) in [
+    for (width, outer, want) in [
         (2.0, 1.0, 3.0),
         (4.0, 1.0, 2.0),
         (4.0, 2.0, 1.0),
         (12.0, 1.0, 0.67),
     ] {
-        let outlines = Outlines {
-            width,
-            weight: LineWeight {
-                outer,
-                ..LineWeight::EVEN
-            },
-            ..boiling(3.0, 0.0)
+        let weight = LineWeight {
+            outer,
+            ..LineWeight::EVEN
         };
-        small.style(&ComicStyle::new().with(outlines));
-        small.settle();
-        let strays = strays(&small.picture());
-        let found = (strays.iter()).fold(0.0f64, |most, stray| most.max(stray.abs()));
-        println!("{width} px, outer {outer}: strays by {found:.2}");
-        assert!(found <= most + 0.05, "{width}, {outer}: {found}");
-        assert!(found > 0.4 * most, "{width}, {outer}: {found}");
+        let found = most(&small.outlined(Outlines {
+            width,
+            weight,
+            ..boiling(3.0, 0.0)
+        }));
+        assert!(found <= want + 0.05, "{width}, {outer}: {found}");
+        assert!(found > 0.4 * want, "{width}, {outer}: {found}");
     }
 }
 
@@ -129,21 +100,11 @@ fn wide_lines_stray_less() {
 #[test]
 fn drawings_change_at_their_rate() {
     let mut small = edge();
-    let mut drawings = |rate: f32, frames: u32| {
-        small.style(&ComicStyle::new().with(boiling(2.0, rate)));
-        small.settle();
-        let mut pictures = vec![small.picture()];
-        for _ in 0..frames {
-            small.headless.step(1);
-            let next = small.picture();
-            if Some(&next) != pictures.last() {
-                pictures.push(next);
-            }
-        }
-        pictures.len()
+    let mut drawings = |rate: f32| {
+        small.outlined(boiling(2.0, rate));
+        runs(&small.film(13)).len()
     };
-    assert_eq!(drawings(0.0, 12), 1);
-    let many = drawings(60.0, 12);
-    let few = drawings(6.0, 12);
+    assert_eq!(drawings(0.0), 1);
+    let [many, few] = [60.0, 6.0].map(drawings);
     assert!(many > few && few > 1, "{many}, {few}");
 }

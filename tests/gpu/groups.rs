@@ -6,7 +6,8 @@ use bevy::world_serialization::WorldAssetRoot;
 use serde_json::json;
 
 use crate::{
-    ids::{cube, material, put_two_cubes, seam, skinned_and_morphed, total, two_cubes},
+    ids::{cube, edge, material, put_two_cubes, seam, total, two_cubes},
+    line_scenes::id_of,
     outlines::ink,
     prelude::*,
 };
@@ -14,39 +15,36 @@ use crate::{
 /// The width of the pictures.
 const WIDTH: usize = 120;
 
-/// The weakest row of the strongest ink near a column.
-fn edge(ink: &[f32], column: usize) -> f32 {
-    (25..35)
-        .map(|y| {
-            let row = &ink[y * WIDTH..][column - 3..column + 3];
-            row.iter().copied().fold(0.0, f32::max)
-        })
-        .fold(1.0, f32::min)
-}
-
 /// The strongest ink between the cubes, away from their outlines.
 fn inside(ink: &[f32]) -> f32 {
-    (25..35)
-        .flat_map(|y| ink[y * WIDTH..][54..66].iter().copied())
-        .fold(0.0, f32::max)
+    let row = |y: usize| ink[y * WIDTH..][54..66].iter().copied();
+    (25..35).flat_map(row).fold(0.0, f32::max)
 }
 
 fn lines(small: &mut Small) -> Vec<f32> {
     ink(small, Outlines::default())
 }
 
+/// The cubes, or quads, are one object.
+fn assert_one(small: &mut Small, what: &str) {
+    let ink = inside(&lines(small));
+    assert!(ink < 0.02, "{what}: {ink}");
+}
+
+/// They are two objects.
+fn assert_two(small: &mut Small, what: &str) {
+    let ink = seam(&lines(small));
+    assert!(ink > 0.9, "{what}: {ink}");
+}
+
 /// The object's id at a pixel of the middle row.
 fn id_at(small: &Small, x: usize) -> u32 {
-    small.object_ids().expect("drawn").pixels[30 * WIDTH + x][0]
+    small.ids()[30 * WIDTH + x]
 }
 
 fn group(small: &mut Small, members: &[Entity]) -> Entity {
-    let root = small
-        .world()
-        .spawn((OutlineGroup, Transform::default(), Visibility::default()))
-        .id();
-    small.world().entity_mut(root).add_children(members);
-    root
+    let parts = (OutlineGroup, Transform::default(), Visibility::default());
+    small.world().spawn(parts).add_children(members).id()
 }
 
 #[test]
@@ -56,20 +54,22 @@ fn a_group_has_no_object_edge_inside_and_one_against_others() {
         let [left, right] = put_two_cubes(&mut small, msaa);
         let plain = material(&mut small, |_| {});
         let other = cube(&mut small, plain, Transform::from_xyz(1.5, 0.0, 0.0));
-        assert!(seam(&lines(&mut small)) > 0.9, "without a group");
+        assert_two(&mut small, "without a group");
 
         let root = group(&mut small, &[left, right]);
-        let grouped = lines(&mut small);
-        assert!(inside(&grouped) < 0.02, "{msaa:?}: {}", inside(&grouped));
+        assert_one(&mut small, "grouped");
         // The third cube begins at x = 1: 42.6 pixels right of the middle.
-        assert!(edge(&grouped, 103) > 0.9, "against an object outside");
-        let id = u32::from(object_id(root));
-        assert_eq!([id_at(&small, 50), id_at(&small, 70)], [id; 2]);
-        assert_eq!(id_at(&small, 110), u32::from(object_id(other)));
+        let grouped = lines(&mut small);
+        assert!(edge(&grouped, 100..106) > 0.9, "against an object outside");
+        let found = [50, 70, 110].map(|x| id_at(&small, x));
+        assert_eq!(found, [root, root, other].map(id_of), "{msaa:?}");
 
         // Two groups are two objects.
         group(&mut small, &[other]);
-        assert!(edge(&lines(&mut small), 103) > 0.9, "against another group");
+        assert!(
+            edge(&lines(&mut small), 100..106) > 0.9,
+            "against another group"
+        );
         assert_eq!(small.errors(), 0);
     }
 }
@@ -78,50 +78,43 @@ fn a_group_has_no_object_edge_inside_and_one_against_others() {
 fn a_group_follows_changes_of_the_hierarchy() {
     let (mut small, [left, right]) = two_cubes();
     let root = group(&mut small, &[left, right]);
-    assert!(inside(&lines(&mut small)) < 0.02, "grouped");
-    small.world().entity_mut(root).remove::<OutlineGroup>();
-    assert!(seam(&lines(&mut small)) > 0.9, "removed");
-    small.world().entity_mut(root).insert(OutlineGroup);
-    assert!(inside(&lines(&mut small)) < 0.02, "inserted again");
+    assert_one(&mut small, "grouped");
+    small.on(root).remove::<OutlineGroup>();
+    assert_two(&mut small, "removed");
+    small.on(root).insert(OutlineGroup);
+    assert_one(&mut small, "inserted again");
 
     let second = group(&mut small, &[right]);
-    assert!(seam(&lines(&mut small)) > 0.9, "in two groups");
-    assert_eq!(id_at(&small, 70), u32::from(object_id(second)));
+    assert_two(&mut small, "in two groups");
+    assert_eq!(id_at(&small, 70), id_of(second));
 
     // Two levels down, below an entity that is no mesh.
-    let between = small
-        .world()
-        .spawn((
-            ChildOf(root),
-            Transform::default(),
-            Visibility::default(),
-            children![],
-        ))
-        .id();
-    small.world().entity_mut(right).insert(ChildOf(between));
-    assert!(inside(&lines(&mut small)) < 0.02, "below a descendant");
-    small.world().entity_mut(right).insert(OutlineGroup);
-    assert!(seam(&lines(&mut small)) > 0.9, "the nearest group counts");
-    assert_eq!(id_at(&small, 70), u32::from(object_id(right)));
-    small.world().entity_mut(right).remove::<OutlineGroup>();
-    assert!(inside(&lines(&mut small)) < 0.02, "and back");
+    let parts = (ChildOf(root), Transform::default(), Visibility::default());
+    let between = small.world().spawn(parts).id();
+    small.on(right).insert(ChildOf(between));
+    assert_one(&mut small, "below a descendant");
+    small.on(right).insert(OutlineGroup);
+    assert_two(&mut small, "the nearest group counts");
+    assert_eq!(id_at(&small, 70), id_of(right));
+    small.on(right).remove::<OutlineGroup>();
+    assert_one(&mut small, "and back");
 
     // The whole branch leaves the group.
-    small.world().entity_mut(between).remove::<ChildOf>();
-    assert!(seam(&lines(&mut small)) > 0.9, "outside");
-    assert_eq!(id_at(&small, 70), u32::from(object_id(right)));
-    small.world().entity_mut(between).insert(ChildOf(root));
-    assert!(inside(&lines(&mut small)) < 0.02, "inside");
+    small.on(between).remove::<ChildOf>();
+    assert_two(&mut small, "outside");
+    assert_eq!(id_at(&small, 70), id_of(right));
+    small.on(between).insert(ChildOf(root));
+    assert_one(&mut small, "inside");
 
     // The root goes, the cubes stay.
-    small.world().entity_mut(root).detach_all_children();
+    small.on(root).detach_all_children();
     small.world().despawn(root);
-    assert!(seam(&lines(&mut small)) > 0.9, "without a root");
-    assert_eq!(id_at(&small, 50), u32::from(object_id(left)));
+    assert_two(&mut small, "without a root");
+    assert_eq!(id_at(&small, 50), id_of(left));
 
     // The root goes with everything below it.
     let last = group(&mut small, &[left, right]);
-    assert!(inside(&lines(&mut small)) < 0.02);
+    assert_one(&mut small, "with a new root");
     small.world().despawn(last);
     assert!(total(&lines(&mut small), 0..WIDTH) < 0.05);
     assert_eq!(small.errors(), 0);
@@ -131,10 +124,8 @@ fn a_group_follows_changes_of_the_hierarchy() {
 fn silhouettes_and_styles_inside_a_group_remain() {
     let (mut small, [left, right]) = two_cubes();
     group(&mut small, &[left, right]);
-    small
-        .world()
-        .entity_mut(right)
-        .insert(Transform::from_xyz(0.5, 0.0, 0.6));
+    let before = Transform::from_xyz(0.5, 0.0, 0.6);
+    small.on(right).insert(before);
     let silhouettes = Outlines {
         creases: None,
         ..default()
@@ -142,7 +133,7 @@ fn silhouettes_and_styles_inside_a_group_remain() {
     let stepped = ink(&mut small, silhouettes);
     assert!(seam(&stepped) > 0.9, "one cube hides a part of the other");
 
-    small.world().entity_mut(left).insert(OutlineStyle {
+    small.on(left).insert(OutlineStyle {
         color: Some(Color::srgb(1.0, 0.0, 0.0)),
         ..default()
     });
@@ -157,47 +148,20 @@ fn silhouettes_and_styles_inside_a_group_remain() {
     assert_eq!(red(64..WIDTH), 0, "the right cube has none");
 }
 
-#[test]
-fn skinned_and_morphed_meshes_have_the_id_of_their_group() {
-    let (mut small, [skinned, morphed]) = skinned_and_morphed();
-    let root = group(&mut small, &[skinned, morphed]);
-    lines(&mut small);
-    let ids = small.object_ids().expect("drawn");
-    let id = u32::from(object_id(root));
-    let grouped = ids.pixels.iter().filter(|p| p[0] == id).count();
-    let any = ids.pixels.iter().filter(|p| p[0] != 0).count();
-    assert!(grouped > 200, "{grouped}");
-    assert_eq!(grouped, any, "no other id is left");
-    assert_eq!(small.errors(), 0);
-}
-
 /// Writes a model of quads in one plane: a node with two primitives from x = -1 to 0 and
 /// from 0 to 1, and a node with one primitive from 1 to 2. Nothing has a name.
 fn write_quads(folder: &Path) {
-    let mut bytes = Vec::new();
-    let mut push = |values: &[f32]| values.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
-    for x in [-1.0f32, 0.0, 1.0] {
-        for [i, j] in [[0.0, -0.5], [1.0, -0.5], [1.0, 0.5], [0.0, 0.5]] {
-            push(&[x + i, j, 0.5]);
-        }
-    }
-    (0..4).for_each(|_| push(&[0.0, 0.0, 1.0]));
-    for index in [0u16, 1, 2, 0, 2, 3] {
-        bytes.extend(index.to_le_bytes());
-    }
-    let positions = (0..3).map(|i| {
-        let (min, max) = ([f64::from(i) - 1.0, -0.5, 0.5], [f64::from(i), 0.5, 0.5]);
-        json!({"bufferView": 0, "byteOffset": 48 * i, "componentType": 5126, "count": 4,
+    const CORNERS: [[f32; 2]; 6] = [[0., 0.], [1., 0.], [1., 1.], [0., 0.], [1., 1.], [0., 1.]];
+    let lefts = [-1.0f32, 0.0, 1.0];
+    let places = lefts.map(|left| CORNERS.map(|[x, y]| [left + x, y - 0.5, 0.5]));
+    let values = places.as_flattened().as_flattened().iter();
+    let bytes: Vec<u8> = values.flat_map(|value| value.to_le_bytes()).collect();
+    let accessor = |i: usize| {
+        let [min, max] = [places[i][0], places[i][2]];
+        json!({"bufferView": 0, "byteOffset": 72 * i, "componentType": 5126, "count": 6,
             "type": "VEC3", "min": min, "max": max})
-    });
-    let mut accessors: Vec<_> = positions.collect();
-    accessors.push(
-        json!({"bufferView": 0, "byteOffset": 144, "componentType": 5126,
-        "count": 4, "type": "VEC3"}),
-    );
-    accessors.push(json!({"bufferView": 1, "componentType": 5123, "count": 6,
-        "type": "SCALAR"}));
-    let primitive = |i: usize| json!({"attributes": {"POSITION": i, "NORMAL": 3}, "indices": 4, "material": i % 2});
+    };
+    let primitive = |i: usize| json!({"attributes": {"POSITION": i}, "material": i % 2});
     let unlit = |color: f32| {
         json!({"pbrMetallicRoughness": {"baseColorFactor": [color, color, color, 1.0]},
             "extensions": {"KHR_materials_unlit": {}}})
@@ -208,9 +172,8 @@ fn write_quads(folder: &Path) {
         "nodes": [{"mesh": 0}, {"mesh": 1}],
         "meshes": [{"primitives": [primitive(0), primitive(1)]}, {"primitives": [primitive(2)]}],
         "materials": [unlit(0.6), unlit(0.7)],
-        "accessors": accessors,
-        "bufferViews": [{"buffer": 0, "byteLength": 192, "target": 34962},
-            {"buffer": 0, "byteOffset": 192, "byteLength": 12, "target": 34963}],
+        "accessors": [accessor(0), accessor(1), accessor(2)],
+        "bufferViews": [{"buffer": 0, "byteLength": bytes.len(), "target": 34962}],
         "buffers": [{"uri": "quads.bin", "byteLength": bytes.len()}],
     });
     fs::write(folder.join("quads.bin"), bytes).expect("written");
@@ -253,16 +216,13 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
     let scene = WorldAssetRoot(assets.load("quads.gltf#Scene0"));
     let root = small.world().spawn((Object, scene)).id();
     let meshes = load(&mut small, 3);
-    let loaded = lines(&mut small);
-    assert!(inside(&loaded) < 0.02, "primitives: {}", inside(&loaded));
-    assert!(edge(&loaded, 103) > 0.9, "another node is another object");
+    assert_one(&mut small, "primitives");
+    let is_apart = |small: &mut Small| edge(&lines(small), 100..106) > 0.9;
+    assert!(is_apart(&mut small), "another node is another object");
     let id = id_at(&small, 50);
     assert_eq!(id, id_at(&small, 70));
-    let ids = |entities: &[Entity]| -> Vec<u32> {
-        let ids = entities.iter().map(|e| u32::from(object_id(*e)));
-        ids.collect()
-    };
-    assert!(ids(&meshes).contains(&id), "the id of a primitive");
+    let is_primitive = meshes.iter().any(|mesh| id_of(*mesh) == id);
+    assert!(is_primitive, "the id of a primitive");
 
     // A primitive with a group of its own is an object of its own, whichever it is.
     let world = small.world();
@@ -273,19 +233,19 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
     let parts = nodes.max_by_key(Vec::len).expect("two nodes");
     assert_eq!(parts.len(), 2);
     for part in parts {
-        small.world().entity_mut(part).insert(OutlineGroup);
-        assert!(seam(&lines(&mut small)) > 0.9, "separated");
+        small.on(part).insert(OutlineGroup);
+        assert_two(&mut small, "separated");
         assert_ne!(id_at(&small, 50), id_at(&small, 70));
-        small.world().entity_mut(part).remove::<OutlineGroup>();
-        assert!(inside(&lines(&mut small)) < 0.02, "together again");
+        small.on(part).remove::<OutlineGroup>();
+        assert_one(&mut small, "together again");
     }
 
     // A group on the root joins the nodes too.
-    small.world().entity_mut(root).insert(OutlineGroup);
-    let whole = lines(&mut small);
-    assert!(inside(&whole) < 0.02 && edge(&whole, 103) < 0.02);
-    small.world().entity_mut(root).remove::<OutlineGroup>();
-    assert!(edge(&lines(&mut small), 103) > 0.9);
+    small.on(root).insert(OutlineGroup);
+    assert_one(&mut small, "a group on the root");
+    assert!(edge(&lines(&mut small), 100..106) < 0.02);
+    small.on(root).remove::<OutlineGroup>();
+    assert!(is_apart(&mut small));
     assert_eq!(small.errors(), 0);
 }
 
@@ -296,31 +256,27 @@ fn copies_of_a_primitive_below_one_parent_are_several_objects() {
     let assets = small.world().resource::<AssetServer>().clone();
     let plain = material(&mut small, |_| {});
     let world = small.world();
-    let parent = world
-        .spawn((Object, Transform::default(), Visibility::default()))
-        .id();
+    let parts = (Object, Transform::default(), Visibility::default());
+    let parent = world.spawn(parts).id();
     for [primitive, x] in [[0, 0], [1, 0], [0, 1], [1, -1]] {
-        world.spawn((
-            ChildOf(parent),
-            Mesh3d(assets.load(format!("quads.gltf#Mesh0/Primitive{primitive}"))),
-            MeshMaterial3d(plain.clone()),
-            // The copies lie a little in front, where they hide their originals.
-            Transform::from_xyz(x as f32, 0.0, if x == 0 { 0.0 } else { 0.001 }),
-        ));
+        let path = format!("quads.gltf#Mesh0/Primitive{primitive}");
+        // The copies lie a little in front, where they hide their originals.
+        let z = if x == 0 { 0.0 } else { 0.001 };
+        let at = Transform::from_xyz(x as f32, 0.0, z);
+        let mesh = Mesh3d(assets.load(path));
+        world.spawn((ChildOf(parent), mesh, MeshMaterial3d(plain.clone()), at));
     }
     load(&mut small, 4);
-    let drawn = lines(&mut small);
     // The copy of primitive 0 lies over primitive 1, and that of primitive 1 over
     // primitive 0: the two copies are one object.
-    assert!(inside(&drawn) < 0.02, "the copies are one object");
-    let copies = id_at(&small, 50);
+    assert_one(&mut small, "the copies");
     let world = small.world();
     let children = world.get::<Children>(parent).expect("four").to_vec();
-    assert_eq!(copies, u32::from(object_id(children[2])));
+    assert_eq!(id_at(&small, 50), id_of(children[2]));
     // Without one copy, its original is seen next to the other copy.
-    world.despawn(children[3]);
-    assert!(seam(&lines(&mut small)) > 0.9, "an original and a copy");
-    assert_eq!(id_at(&small, 50), u32::from(object_id(children[0])));
-    assert_eq!(id_at(&small, 70), u32::from(object_id(children[2])));
+    small.world().despawn(children[3]);
+    assert_two(&mut small, "an original and a copy");
+    let found = [50, 70].map(|x| id_at(&small, x));
+    assert_eq!(found, [children[0], children[2]].map(id_of));
     assert_eq!(small.errors(), 0);
 }

@@ -3,7 +3,10 @@
 //! No such device is at hand, so the engine's vertex shader is changed: it multiplies depth by a
 //! factor, in the pass of ids only. That pass is the one without normals.
 
-use bevy::shader::{Shader, Source};
+use bevy::{
+    image::ToExtents,
+    shader::{Shader, Source},
+};
 use bevy_comics::objects::ObjectIdDepthTest;
 
 use crate::prelude::*;
@@ -21,10 +24,9 @@ struct Nudge {
 impl Nudge {
     fn new(small: &mut Small) -> Self {
         let shaders = small.world().resource::<Assets<Shader>>();
-        let (id, shader) = shaders
-            .iter()
-            .find(|(_, shader)| shader.path.ends_with("prepass/prepass.wgsl"))
-            .expect("the engine's shader is an asset");
+        let is_prepass = |shader: &Shader| shader.path.ends_with("prepass/prepass.wgsl");
+        let mut prepass = shaders.iter().filter(|(_, shader)| is_prepass(shader));
+        let (id, shader) = prepass.next().expect("the engine's shader");
         let Source::Wgsl(text) = &shader.source else {
             panic!("not WGSL")
         };
@@ -58,11 +60,7 @@ fn scene(msaa: Msaa) -> (Small, Entity) {
     let mut small = Small::alone(options(UVec2::new(120, 80)), msaa);
     let [white, clear] = [[255; 4], [255, 255, 255, 0]];
     let image = Image::new(
-        Extent3d {
-            width: 2,
-            height: 2,
-            depth_or_array_layers: 1,
-        },
+        UVec2::splat(2).to_extents(),
         TextureDimension::D2,
         [white, clear, clear, white].concat(),
         TextureFormat::Rgba8UnormSrgb,
@@ -84,9 +82,7 @@ fn scene(msaa: Msaa) -> (Small, Entity) {
 
 /// The method by which ids were drawn in the last frame; `None`: at equal depth.
 fn method(small: &Small) -> Option<&'static str> {
-    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
-    let stages = diagnostics.cameras.get(&small.camera);
-    match stages.and_then(|stages| stages.outcome(ComicsStage::ObjectIds)) {
+    match small.outcome(ComicsStage::ObjectIds) {
         Some(StageOutcome::RanWith(method)) => Some(method),
         _ => None,
     }
@@ -106,13 +102,10 @@ fn covered_and_missing(small: &Small) -> [usize; 2] {
     let depth = small.depth().expect("a prepass");
     let mut found = [0, 0];
     for (sample, ids) in (0..).zip(ids(small)) {
-        for y in 0..ids.height {
-            for x in 0..ids.width {
-                let covered = depth.at(x, y, sample) > 0.0;
-                let missing = ids.pixels[(y * ids.width + x) as usize][0] == 0;
-                found[0] += usize::from(covered);
-                found[1] += usize::from(covered && missing);
-            }
+        for (i, [id, _]) in (0..).zip(ids.pixels) {
+            let is_covered = depth.at(i % ids.width, i / ids.width, sample) > 0.0;
+            found[0] += usize::from(is_covered);
+            found[1] += usize::from(is_covered && id == 0);
         }
     }
     found
@@ -121,18 +114,15 @@ fn covered_and_missing(small: &Small) -> [usize; 2] {
 /// Pixels that are not at a border between objects, and those of them with another id.
 fn inner_and_wrong(want: &IdImage, got: &IdImage) -> [usize; 2] {
     let (w, h) = (want.width as usize, want.height as usize);
-    let mut found = [0, 0];
-    for y in 1..h - 1 {
-        for x in 1..w - 1 {
-            let id = want.pixels[y * w + x];
-            let same = |j: usize| (x - 1..=x + 1).all(|i| want.pixels[j * w + i] == id);
-            if (y - 1..=y + 1).all(same) {
-                found[0] += 1;
-                found[1] += usize::from(got.pixels[y * w + x] != id);
-            }
-        }
-    }
-    found
+    let inner = (w..w * (h - 1)).filter(|i| (1..w - 1).contains(&(i % w)));
+    let inner = inner.filter(|i| {
+        let mut near = [i - w, *i, i + w].into_iter().flat_map(|j| j - 1..=j + 1);
+        near.all(|j| want.pixels[j] == want.pixels[*i])
+    });
+    inner.fold([0, 0], |[inner, wrong], i| {
+        let is_wrong = got.pixels[i] != want.pixels[i];
+        [inner + 1, wrong + usize::from(is_wrong)]
+    })
 }
 
 /// Every covered sample has an id, and all but those at borders the one that is wanted.
@@ -147,9 +137,16 @@ fn assert_complete(small: &Small, want: &[IdImage], what: &str) {
     }
 }
 
-fn pixels_of(ids: &IdImage, entity: Entity) -> usize {
-    let id = u32::from(object_id(entity));
-    ids.pixels.iter().filter(|pixel| pixel[0] == id).count()
+/// Nearly all covered samples have no id.
+fn assert_lost(small: &Small, what: &str) {
+    let [covered, missing] = covered_and_missing(small);
+    assert!(10 * missing > 9 * covered, "{what}: {missing} of {covered}");
+}
+
+/// The game decides.
+fn set_test(small: &mut Small, depth_test: ObjectIdDepthTest) {
+    small.world().insert_resource(depth_test);
+    small.settle();
 }
 
 /// Pixels of which the samples have several ids.
@@ -176,32 +173,26 @@ fn assert_tolerance_keeps_ids(msaa: Msaa) {
     let nudge = Nudge::new(&mut small);
     let want = ids(&small);
     assert_complete(&small, &want, "as it is");
-    let mask = pixels_of(&want[0], screen);
+    let mask = small.pixels_of(screen);
     assert!(mask > 100, "the screen is visible: {mask} pixels");
     // Each sample has an id of its own, with a tolerance too.
     let borders = mixed(&want);
     assert!((borders > 100) == (msaa != Msaa::Off), "{borders} pixels");
-    small.world().insert_resource(ObjectIdDepthTest::Tolerant);
-    small.settle();
+    set_test(&mut small, ObjectIdDepthTest::Tolerant);
     assert_eq!(method(&small), TOLERANT);
     assert_complete(&small, &want, "a tolerance without need");
     for factor in NUDGES {
         nudge.set(&mut small, factor);
         let what = format!("{msaa:?}, {factor}");
         assert_complete(&small, &want, &what);
-        small.world().insert_resource(ObjectIdDepthTest::Equal);
-        small.settle();
+        set_test(&mut small, ObjectIdDepthTest::Equal);
         assert_eq!(method(&small), None);
-        let [covered, missing] = covered_and_missing(&small);
-        assert!(10 * missing > 9 * covered, "{what}: {missing} of {covered}");
-        small.world().insert_resource(ObjectIdDepthTest::Tolerant);
-        small.settle();
+        assert_lost(&small, &what);
+        set_test(&mut small, ObjectIdDepthTest::Tolerant);
         assert_complete(&small, &want, &what);
         let found = mixed(&ids(&small));
-        assert!(
-            found.abs_diff(borders) * 10 <= borders,
-            "{what}: {found}, {borders} pixels of several ids"
-        );
+        let off = found.abs_diff(borders);
+        assert!(off * 10 <= borders, "{what}: {found}, {borders} pixels");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -246,9 +237,7 @@ fn assert_noticed_for_good(msaa: Msaa, frames: usize) {
         assert_eq!(method(&small), TOLERANT, "{msaa:?}");
     }
     assert_complete(&small, &want, "for good");
-    // The game decides.
-    small.world().insert_resource(ObjectIdDepthTest::Equal);
-    small.settle();
+    set_test(&mut small, ObjectIdDepthTest::Equal);
     assert_eq!(method(&small), None);
     assert_complete(&small, &want, "at equal depth again");
     assert_eq!(small.errors(), 0);
@@ -267,8 +256,7 @@ fn what_a_tolerance_does_not_bring_back_is_drawn_at_equal_depth() {
         tried += usize::from(method(&small) == TOLERANT);
     }
     assert!(tried < 10, "{tried} frames of trials");
-    let [covered, missing] = covered_and_missing(&small);
-    assert!(10 * missing > 9 * covered, "{missing} of {covered}");
+    assert_lost(&small, "depth is off by a twentieth");
     assert_eq!(method(&small), None);
     assert_eq!(small.errors(), 0);
 }
@@ -282,20 +270,13 @@ fn furnish(small: &mut Small) {
     let at = |x| Transform::from_xyz(x, 1.0, 2.2);
     small.put(Rectangle::new(0.8, 0.8), glass(0.4), at(-1.5));
     let pane = small.put(Rectangle::new(0.8, 0.8), glass(0.8), at(-0.5));
-    let bare = small.put(
-        Sphere::new(0.3),
-        unlit(Color::srgb(0.7, 0.4, 0.6)),
-        Transform::from_xyz(0.2, 0.3, 2.4),
-    );
-    let hidden = small.put(
-        Cuboid::default(),
-        unlit(Color::BLACK),
-        Transform::from_xyz(0.0, 0.5, 3.0),
-    );
-    let world = small.world();
-    world.entity_mut(pane).insert(DepthWrite::default());
-    world.entity_mut(bare).insert(NoOutlines::default());
-    world.entity_mut(hidden).insert(Visibility::Hidden);
+    small.on(pane).insert(DepthWrite::default());
+    let ball = Transform::from_xyz(0.2, 0.3, 2.4);
+    let bare = small.put(Sphere::new(0.3), unlit(Color::WHITE), ball);
+    small.on(bare).insert(NoOutlines::default());
+    let cube = Transform::from_xyz(0.0, 0.5, 3.0);
+    let hidden = small.put(Cuboid::default(), unlit(Color::BLACK), cube);
+    small.on(hidden).insert(Visibility::Hidden);
 }
 
 /// Sky, transparent and excluded things, alpha masks, what comes, goes and moves: no frame is
@@ -322,12 +303,8 @@ fn assert_drawn_at_equal_depth(msaas: &[Msaa], frames: u16) {
             let turn = 6.0 * f32::from(frame) / f32::from(frames);
             let eye = Vec3::new(6.0 * turn.sin(), 2.4, 6.0 * turn.cos());
             small.insert(Transform::from_translation(eye).looking_at(Vec3::Y, Vec3::Y));
-            let shown = if frame % 20 < 10 {
-                Visibility::Inherited
-            } else {
-                Visibility::Hidden
-            };
-            small.world().entity_mut(screen).insert(shown);
+            let shown = [Visibility::Inherited, Visibility::Hidden];
+            small.on(screen).insert(shown[usize::from(frame % 20 / 10)]);
             small.headless.step(1);
             assert_eq!(method(&small), None, "{msaa:?}, frame {frame}");
         }

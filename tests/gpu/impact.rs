@@ -3,7 +3,7 @@
 use bevy_comics::{Impact, ReduceFlashing, diagnostics::ImpactCounts};
 use image::RgbaImage;
 
-use crate::prelude::*;
+use crate::{line_scenes::runs, prelude::*};
 
 fn small() -> Small {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
@@ -18,30 +18,18 @@ fn trigger(small: &mut Small, edit: impl Fn(&mut Impact)) {
     small.world().flush();
 }
 
-fn counts(small: &Small) -> ImpactCounts {
-    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
-    diagnostics
-        .impacts
-        .get(&small.camera)
-        .copied()
-        .unwrap_or_default()
+fn counted(shown: u32, refused: u32) -> Option<ImpactCounts> {
+    Some(ImpactCounts { shown, refused })
 }
 
-/// The pictures of the next frames.
-fn film(small: &mut Small, frames: usize) -> Vec<RgbaImage> {
-    let mut film = Vec::new();
-    for _ in 0..frames {
-        small.headless.step(1);
-        film.push(small.picture());
-    }
-    film
+fn counts_of(small: &Small, camera: Entity) -> Option<ImpactCounts> {
+    let world = small.headless.app.world();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    diagnostics.impacts.get(&camera).copied()
 }
 
-/// How often a picture is shown in a row, and the next one, and so on.
-fn runs(film: &[RgbaImage]) -> Vec<usize> {
-    film.chunk_by(|a, b| a == b)
-        .map(<[RgbaImage]>::len)
-        .collect()
+fn counts(small: &Small) -> Option<ImpactCounts> {
+    counts_of(small, small.camera)
 }
 
 /// Black and white, and no colours, unlike the scene.
@@ -58,17 +46,11 @@ fn an_impact_is_two_drawings_and_then_nothing() {
     let mut small = small();
     let before = small.picture();
     trigger(&mut small, |_| {});
-    let film = film(&mut small, 20);
+    let film = small.film(20);
     assert_eq!(runs(&film), [5, 5, 10]);
     assert!(is_two_tone(&film[0]) && is_two_tone(&film[9]));
     assert_eq!(film[10], before);
-    assert_eq!(
-        counts(&small),
-        ImpactCounts {
-            shown: 1,
-            refused: 0
-        }
-    );
+    assert_eq!(counts(&small), counted(1, 0));
     assert_eq!(small.errors(), 0);
 }
 
@@ -76,29 +58,26 @@ fn an_impact_is_two_drawings_and_then_nothing() {
 #[test]
 fn a_style_comes_back() {
     let mut small = small();
-    let own = (
-        Outlines::default(),
-        SpeedLines {
-            rate: 0.0,
-            color: Color::srgb(1.0, 0.0, 0.0),
-            ..default()
-        },
-        TwoTone {
-            light: Color::srgb(0.2, 1.0, 0.2),
-            ..default()
-        },
-    );
-    small.insert(own).settle();
+    let lines = SpeedLines {
+        rate: 0.0,
+        color: Color::srgb(1.0, 0.0, 0.0),
+        ..default()
+    };
+    let tones = TwoTone {
+        light: Color::srgb(0.2, 1.0, 0.2),
+        ..default()
+    };
+    small.insert((Outlines::default(), lines, tones)).settle();
     let before = small.picture();
     trigger(&mut small, |impact| impact.drawings = 1);
-    let film = film(&mut small, 12);
+    let film = small.film(12);
     assert_eq!(runs(&film), [5, 7]);
     let red = |p: &image::Rgba<u8>| p.0[0] > 150 && p.0[1] < 50;
     assert!(before.pixels().any(red) && !film[0].pixels().any(red));
     assert_eq!(film[5], before);
     let camera = small.camera;
-    let kept = small.world().get::<TwoTone>(camera).copied();
-    assert_eq!(kept.map(|t| t.light), Some(Color::srgb(0.2, 1.0, 0.2)));
+    let kept = small.world().get::<TwoTone>(camera);
+    assert_eq!(kept.expect("its tones").light, tones.light);
 }
 
 /// Alternate drawings exchange the tones.
@@ -110,7 +89,7 @@ fn tones_alternate() {
         impact.alternate = true;
         impact.lines = None;
     });
-    let film = film(&mut small, 18);
+    let film = small.film(18);
     assert_eq!(runs(&film), [5, 5, 5, 3]);
     assert_eq!(film[0], film[10]);
     for (a, b) in film[0].pixels().zip(film[5].pixels()) {
@@ -135,11 +114,10 @@ fn lines_are_exchanged_with_the_tones() {
     });
     small.headless.step(1);
     let negative = small.picture();
-    let count = |code| {
+    for code in [0, 255] {
         let found = plain.pixels().filter(|p| p.0[..3] == [code; 3]);
-        found.count()
-    };
-    assert!(count(0) > 100 && count(255) > 100);
+        assert!(found.count() > 100, "{code}");
+    }
     for (x, y, _) in plain.enumerate_pixels() {
         let sum = linear(&plain, x, y)[0] + linear(&negative, x, y)[0];
         // Half a code of rounding in each: up to 0.0046 in white.
@@ -155,12 +133,12 @@ fn a_fourth_flash_in_a_second_is_refused() {
     let before = small.picture();
     let mut begins = Vec::new();
     for frame in 0..180usize {
-        let shown = counts(&small).shown;
+        let shown = counts(&small);
         if frame % 6 == 0 {
             trigger(&mut small, |impact| impact.drawings = 1);
         }
         small.headless.step(1);
-        if counts(&small).shown > shown {
+        if counts(&small).map(|c| c.shown) != shown.map(|c| c.shown) {
             begins.push(frame);
             assert!(is_two_tone(&small.picture()), "frame {frame}");
         } else if begins.last().is_none_or(|begin| frame - begin >= 5) {
@@ -168,25 +146,14 @@ fn a_fourth_flash_in_a_second_is_refused() {
         }
     }
     for begin in 0..120 {
-        let within = begins
-            .iter()
-            .filter(|f| (begin..begin + 60).contains(*f))
-            .count();
-        assert!(
-            within <= Impact::MOST_FLASHES,
-            "from frame {begin}: {begins:?}"
-        );
+        let second = begin..begin + 60;
+        let within = begins.iter().filter(|f| second.contains(*f)).count();
+        assert!(within <= Impact::MOST_FLASHES, "{begin}: {begins:?}");
     }
     // A flash counts from the frame after its trigger, which is later than that of the test.
     assert_eq!(begins[..4], [0, 6, 12, 66], "{begins:?}");
     assert_eq!(begins.len(), 9);
-    assert_eq!(
-        counts(&small),
-        ImpactCounts {
-            shown: 9,
-            refused: 21
-        }
-    );
+    assert_eq!(counts(&small), counted(9, 21));
 }
 
 /// An impact that alternates counts as two flashes.
@@ -196,21 +163,9 @@ fn alternating_tones_are_two_flashes() {
     for _ in 0..3 {
         trigger(&mut small, |impact| impact.alternate = true);
     }
-    assert_eq!(
-        counts(&small),
-        ImpactCounts {
-            shown: 1,
-            refused: 2
-        }
-    );
+    assert_eq!(counts(&small), counted(1, 2));
     trigger(&mut small, |_| {});
-    assert_eq!(
-        counts(&small),
-        ImpactCounts {
-            shown: 2,
-            refused: 2
-        }
-    );
+    assert_eq!(counts(&small), counted(2, 2));
 }
 
 /// Two views of one picture share the limit; a view of another picture has its own.
@@ -229,12 +184,8 @@ fn views_of_one_picture_share_the_limit() {
         world.trigger(Impact::new(camera));
         world.flush();
     }
-    let diagnostics = world.resource::<ComicsDiagnostics>();
-    let of = |camera| diagnostics.impacts.get(&camera).copied();
-    let counted = |shown, refused| Some(ImpactCounts { shown, refused });
-    assert_eq!(of(camera), counted(2, 1));
-    assert_eq!(of(beside), counted(1, 1));
-    assert_eq!(of(apart), counted(1, 0));
+    let counts = [camera, beside, apart].map(|camera| counts_of(&small, camera));
+    assert_eq!(counts, [counted(2, 1), counted(1, 1), counted(1, 0)]);
 }
 
 /// With reduced flashing the picture loses 20 % of its light, in one drawing, and comes
@@ -255,12 +206,12 @@ fn reduced_flashing_dims() {
             assert!((b[c] - 0.8 * a[c]).abs() < 0.009, "{a:?}, {b:?}");
         }
     }
-    let film = film(&mut small, 14);
+    let film = small.film(14);
     assert_eq!(runs(&film), [9, 5]);
     // Lines stand still.
     small.headless.step(60);
     trigger(&mut small, |_| {});
-    let film = self::film(&mut small, 15);
+    let film = small.film(15);
     assert_eq!(runs(&film), [10, 5]);
 }
 
@@ -271,21 +222,13 @@ fn a_pause_holds_the_impact() {
     trigger(&mut small, |_| {});
     small.headless.step(2);
     small.world().resource_mut::<Time<Virtual>>().pause();
-    let film = film(&mut small, 90);
-    assert!(
-        film.iter()
-            .all(|picture| *picture == film[0] && is_two_tone(picture))
-    );
+    let film = small.film(90);
+    assert_eq!(runs(&film), [90]);
+    assert!(is_two_tone(&film[0]));
     for _ in 0..4 {
         trigger(&mut small, |_| {});
     }
-    assert_eq!(
-        counts(&small),
-        ImpactCounts {
-            shown: 4,
-            refused: 1
-        }
-    );
+    assert_eq!(counts(&small), counted(4, 1));
 }
 
 /// Numbers out of range count as the nearest end of their range; what is no camera is left
@@ -307,6 +250,5 @@ fn extreme_impacts_end() {
     small.world().trigger(Impact::new(nobody));
     small.headless.step(2);
     assert_eq!(small.picture(), before);
-    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
-    assert!(!diagnostics.impacts.contains_key(&nobody));
+    assert_eq!(counts_of(&small, nobody), None);
 }

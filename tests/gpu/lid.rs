@@ -29,11 +29,16 @@ struct Triangle {
 }
 
 impl Triangle {
+    fn area(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        (b - a).perp_dot(c - a)
+    }
+
     /// One over the distance at a place, if the triangle covers it.
     fn raw_at(&self, at: DVec2) -> Option<f64> {
         let [a, b, c] = self.corners;
-        let area = (b - a).perp_dot(c - a);
-        let weights = [(b, c), (c, a), (a, b)].map(|(p, q)| (q - p).perp_dot(at - p) / area);
+        let weight = |(p, q): (DVec2, DVec2)| (q - p).perp_dot(at - p) / self.area();
+        let weights = [(b, c), (c, a), (a, b)].map(weight);
         let covers = weights.iter().all(|weight| *weight >= 0.0);
         covers.then(|| weights.iter().zip(self.raw).map(|(w, r)| w * r).sum())
     }
@@ -50,19 +55,16 @@ fn triangles(vantage: &Vantage) -> Vec<Triangle> {
         let DVec3 { x, y, z } = to_view.transform_point3(place.as_dvec3());
         (0.5 * size + DVec2::new(x, -y) * (focal / -z), -1.0 / z)
     };
-    let corners = shape.indices.as_chunks::<3>().0.iter();
-    corners
-        .filter_map(|indices| {
-            let [a, b, c] = indices.map(project);
-            // The screen's y axis points down: fronts are clockwise in its coordinates.
-            let is_front = (b.0 - a.0).perp_dot(c.0 - a.0) < 0.0;
-            is_front.then(|| Triangle {
-                corners: [a.0, b.0, c.0],
-                raw: [a.1, b.1, c.1],
-                is_lid: LID.contains(&(indices[0] as usize / VERTICES)),
-            })
-        })
-        .collect()
+    let triangles = shape.indices.as_chunks::<3>().0.iter().map(|indices| {
+        let [a, b, c] = indices.map(project);
+        Triangle {
+            corners: [a.0, b.0, c.0],
+            raw: [a.1, b.1, c.1],
+            is_lid: LID.contains(&(indices[0] as usize / VERTICES)),
+        }
+    });
+    // The screen's y axis points down: fronts are clockwise in its coordinates.
+    triangles.filter(|triangle| triangle.area() < 0.0).collect()
 }
 
 /// The triangles by the pixel columns and rows that they may cover.
@@ -150,8 +152,6 @@ fn sides_of_the_lid_have_lines() {
     let bare: Vec<_> = (sides.iter())
         .filter(|(pixel, side)| !has_line(*pixel, *side))
         .collect();
-    let drawn = sides.len() - bare.len();
-    println!("{drawn} of {} sides of the lid have a line", sides.len());
     assert!(sides.len() > 72, "{}", sides.len());
     // Of a surface that is seen in a single row of pixels, depth alone does not tell whether it is
     // another one or the end of a curve: there, the line of the larger step beside it is drawn.

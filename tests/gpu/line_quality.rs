@@ -1,6 +1,5 @@
-//! Holds how well outlines follow the edges of models that resemble real assets: a change
-//! that loses lines, draws false ones or breaks them into dashes fails here. The report
-//! measures the same with more frames.
+//! How well outlines follow the edges of models that resemble real assets. The report measures the
+//! same with more frames.
 
 use std::f32::consts::TAU;
 
@@ -79,9 +78,13 @@ pub struct Scores {
 
 impl Scores {
     pub fn add(&mut self, truth: &Truth, lines: &[bool]) {
-        let wanted = truth.any(&[0, 1, 2]);
-        let (found, all) = truth.recall(&wanted, lines);
-        let (right, drawn) = truth.precision(&wanted, lines);
+        self.add_beside(truth, &truth.any(&[0, 1, 2]), lines);
+    }
+
+    /// `allowed`: the pixels beside which lines are right.
+    fn add_beside(&mut self, truth: &Truth, allowed: &[bool], lines: &[bool]) {
+        let (found, all) = truth.recall(&truth.any(&[0, 1, 2]), lines);
+        let (right, drawn) = truth.precision(allowed, lines);
         self.found += found;
         self.wanted += all;
         self.right += right;
@@ -110,6 +113,46 @@ impl Scores {
     }
 }
 
+/// The pictures of a model that turns: a large one for the truth, of thin lines or of none, and one
+/// of the size that is measured.
+struct Pictures {
+    fine: Small,
+    lined: Small,
+    size: UVec2,
+}
+
+impl Pictures {
+    /// Depth, normals and ids are drawn in the large one.
+    fn new(size: UVec2, fine_lines: Outlines) -> Self {
+        let mut fine = Small::new(size * FINE, Msaa::Off);
+        let mut lined = Small::new(size, Msaa::Off);
+        fine.insert((DepthPrepass, NormalPrepass));
+        for (small, lines) in [(&mut fine, fine_lines), (&mut lined, scored(2.0))] {
+            small.style(&ComicStyle::new().with(lines));
+            small.settle();
+        }
+        Self { fine, lined, size }
+    }
+
+    fn show(&mut self, specimen: Specimen) {
+        show(&mut self.fine, specimen);
+        show(&mut self.lined, specimen);
+    }
+
+    /// Draws both. Returns the true lines.
+    fn turn(&mut self, distance: f32, angle: f32) -> Truth {
+        for small in [&mut self.fine, &mut self.lined] {
+            turn(small, distance, angle);
+            small.headless.step(3);
+        }
+        truth(&mut self.fine, self.size, FINE)
+    }
+
+    fn fine_width(&self) -> u32 {
+        self.size.x * FINE
+    }
+}
+
 /// For each specimen: the least recall, the most false pixels as a fraction of the picture,
 /// and the most fragments for each 100 pixels of line. Measured on llvmpipe: recall 0.994,
 /// 0.966, 1.000, 1.000, 0.985, 0.986; wrong pixels 0.0036 of the organic model; fragments
@@ -135,57 +178,29 @@ fn lines_of_every_model_follow_their_edges() {
     assert_follow_edges(&LIMITS);
 }
 
-/// The large picture shows thin lines, for which depth, normals and ids are drawn: it has the truth
-/// too.
 fn assert_follow_edges(limits: &[(Specimen, [f64; 3])]) {
-    let mut fine = Small::new(SIZE * FINE, Msaa::Off);
-    let mut lined = Small::new(SIZE, Msaa::Off);
-    for (small, width) in [(&mut fine, 1.0), (&mut lined, 2.0)] {
-        small.style(&ComicStyle::new().with(scored(width)));
-        small.settle();
-    }
+    let mut pictures = Pictures::new(SIZE, scored(1.0));
+    let width = pictures.fine_width();
     let lines = |small: &Small| -> Vec<bool> {
         let ink = removed(small);
         ink.into_iter().map(|ink| ink > 0.25).collect()
     };
     for &(specimen, [least_recall, most_wrong, most_fragments]) in limits {
-        let [
-            mut found,
-            mut all,
-            mut wrong,
-            mut pixels,
-            mut parts,
-            mut line,
-        ] = [0; 6];
-        for small in [&mut fine, &mut lined] {
-            show(small, specimen);
-        }
+        let mut scores = Scores::default();
+        let mut pixels = 0;
+        pictures.show(specimen);
         for angle in [0.0, 1.3, 2.9] {
-            for small in [&mut fine, &mut lined] {
-                turn(small, 2.6, angle);
-                small.headless.step(3);
-            }
-            let truth = truth(&mut fine, SIZE, FINE);
-            let mask = lines(&lined);
-            let (hit, wanted) = truth.recall(&truth.any(&[0, 1, 2]), &mask);
-            let (right, drawn) = truth.precision(&truth.faint, &mask);
-            let whole = lines(&fine);
-            found += hit;
-            all += wanted;
-            wrong += drawn - right;
+            let truth = pictures.turn(2.6, angle);
+            scores.add_beside(&truth, &truth.faint, &lines(&pictures.lined));
+            scores.add_thin(&lines(&pictures.fine), width);
             pixels += truth.inside().count();
-            parts += fragments(&whole, (SIZE.x * FINE) as usize, 6);
-            line += whole.iter().filter(|ink| **ink).count();
         }
-        let recall = found as f64 / all as f64;
-        let wrong = wrong as f64 / pixels as f64;
-        let parts = 100.0 * parts as f64 / line as f64;
-        let name = specimen.name();
-        println!("{name}: recall {recall:.4}, wrong pixels {wrong:.5}, fragments {parts:.2}");
-        assert!(all > 500, "{name}: {all}");
-        assert!(recall >= least_recall, "{name}: recall {recall}");
-        assert!(wrong <= most_wrong, "{name}: wrong pixels {wrong}");
-        assert!(parts <= most_fragments, "{name}: fragments {parts}");
+        let what = format!("{}: {scores:?} of {pixels} pixels", specimen.name());
+        let wrong = (scores.drawn - scores.right) as f64 / pixels as f64;
+        assert!(scores.wanted > 500, "{what}");
+        assert!(1.0 - scores.missed() >= least_recall, "{what}");
+        assert!(wrong <= most_wrong, "{what}");
+        assert!(scores.fragments() <= most_fragments, "{what}");
     }
 }
 
@@ -209,47 +224,35 @@ pub const MOST_FRAGMENTS: f64 = 0.3;
 const ADAPTER: f64 = 0.02;
 const ADAPTER_FRAGMENTS: [f64; 2] = [0.1, 0.05];
 
-/// Pictures of the report's size, so that its scores hold as they are. The large picture
-/// shows thin lines, for which depth, normals and ids are drawn: it has the truth too.
+/// The size of the report's pictures, of which its scores hold as they are.
+const REPORTED: UVec2 = UVec2::new(240, 136);
+const DISTANT_ANGLES: [f32; 2] = [15.0 / 90.0 * TAU, 60.0 / 90.0 * TAU];
+
 #[test]
 #[ignore = "long: large pictures; `closed_gaps_make_distant_wires_whole` has distant wires"]
 fn lines_of_distant_models_follow_their_edges() {
-    let size = UVec2::new(240, 136);
-    let mut fine = Small::new(size * FINE, Msaa::Off);
-    let mut lined = Small::new(size, Msaa::Off);
-    for (small, width) in [(&mut fine, 1.0), (&mut lined, 2.0)] {
-        small.style(&ComicStyle::new().with(scored(width)));
-        small.settle();
-    }
+    let mut pictures = Pictures::new(REPORTED, scored(1.0));
+    let width = pictures.fine_width();
     for (specimen, measured) in DISTANT {
         let mut scores = Scores::default();
-        for small in [&mut fine, &mut lined] {
-            show(small, specimen);
+        pictures.show(specimen);
+        for angle in DISTANT_ANGLES {
+            let truth = pictures.turn(16.0, angle);
+            scores.add(&truth, &inked(&pictures.lined));
+            scores.add_thin(&inked(&pictures.fine), width);
         }
-        for frame in [15.0, 60.0] {
-            for small in [&mut fine, &mut lined] {
-                turn(small, 16.0, frame / 90.0 * TAU);
-                small.headless.step(3);
-            }
-            let truth = truth(&mut fine, size, FINE);
-            scores.add(&truth, &inked(&lined));
-            scores.add_thin(&inked(&fine), size.x * FINE);
-        }
-        let name = specimen.name();
-        let (missed, wrong) = (scores.missed(), scores.wrong());
-        let fragments = scores.fragments();
-        println!("{name}: missed {missed:.4}, wrong {wrong:.4}, fragments {fragments:.2}");
+        let what = format!("{}: {scores:?}", specimen.name());
         // The smooth model and the figure have the fewest edges: 164 and 163 pixels.
         let least = match specimen {
             Specimen::Organic | Specimen::Figure => 160,
             _ => 200,
         };
-        assert!(scores.wanted > least, "{name}: {scores:?}");
+        assert!(scores.wanted > least, "{what}");
         let [ratio, least] = ADAPTER_FRAGMENTS;
         let more = (ratio * measured[2]).max(least);
-        assert!(missed <= measured[0] + ADAPTER, "{name}: {scores:?}");
-        assert!(wrong <= measured[1] + ADAPTER, "{name}: {scores:?}");
-        assert!(fragments <= measured[2] + more, "{name}: {scores:?}");
+        assert!(scores.missed() <= measured[0] + ADAPTER, "{what}");
+        assert!(scores.wrong() <= measured[1] + ADAPTER, "{what}");
+        assert!(scores.fragments() <= measured[2] + more, "{what}");
     }
 }
 
@@ -260,11 +263,7 @@ fn lines_of_distant_models_follow_their_edges() {
 #[test]
 #[ignore = "long: large pictures; `a_curved_rim_has_one_line` turns a cylinder"]
 fn turning_shapes_have_few_dashes() {
-    let size = UVec2::new(240, 136);
-    let mut fine = Small::new(size * FINE, Msaa::Off);
-    fine.insert((DepthPrepass, NormalPrepass));
-    fine.style(&ComicStyle::new().with(ids_alone()));
-    let mut lined = Small::new(size, Msaa::Off);
+    let mut pictures = Pictures::new(REPORTED, ids_alone());
     let cut = Outlines {
         hysteresis: 0.0,
         min_length: 1,
@@ -278,23 +277,21 @@ fn turning_shapes_have_few_dashes() {
         ("cylinder", Cylinder::new(0.6, 1.2).into()),
         ("solid", solid),
     ] {
-        for small in [&mut fine, &mut lined] {
+        for small in [&mut pictures.fine, &mut pictures.lined] {
             small.clear();
             put(small, mesh.clone(), Color::WHITE, Transform::IDENTITY);
         }
         let angles = (0..9u8).map(|frame| f32::from(frame) / 9.0 * TAU);
         let mut length = 0;
         for angle in angles.clone() {
-            turn(&mut fine, 2.6, angle);
-            fine.headless.step(3);
-            let truth = truth(&mut fine, size, FINE);
-            length += truth.any(&[0, 1, 2]).iter().filter(|line| **line).count();
+            let lines = pictures.turn(2.6, angle).any(&[0, 1, 2]);
+            length += lines.iter().filter(|line| **line).count();
         }
+        let lined = &mut pictures.lined;
         let ends = [cut, scored(2.0)].map(|outlines| {
-            lined.style(&ComicStyle::new().with(outlines));
-            lined.settle();
+            lined.outlined(outlines);
             let ends = angles.clone().map(|angle| {
-                turn(&mut lined, 2.6, angle);
+                turn(lined, 2.6, angle);
                 lined.headless.step(1);
                 line_ends(&lined.cracks().expect("lines"))
             });
@@ -302,9 +299,8 @@ fn turning_shapes_have_few_dashes() {
         });
         assert!(length > 2000, "{name}: {length}");
         assert!(ends[1] <= ends[0] + 1, "{name}: {ends:?}");
-        let [cut, continued] = ends.map(|ends| 50.0 * ends as f64 / length as f64);
-        println!("{name}: {cut:.3} dashes, continued {continued:.3}");
-        assert!(continued < 0.5, "{name}: {continued}");
+        let dashes = 50.0 * ends[1] as f64 / length as f64;
+        assert!(dashes < 0.5, "{name}: {dashes}");
     }
 }
 
@@ -313,47 +309,27 @@ fn turning_shapes_have_few_dashes() {
 /// wrong.
 #[test]
 fn closed_gaps_make_distant_wires_whole() {
-    let size = UVec2::new(240, 136);
-    let mut fine = Small::new(size * FINE, Msaa::Off);
-    let mut lined = Small::new(size, Msaa::Off);
-    fine.insert((DepthPrepass, NormalPrepass));
-    fine.style(&ComicStyle::new().with(ids_alone()));
-    for small in [&mut fine, &mut lined] {
-        show(small, Specimen::Wires);
-    }
+    let mut pictures = Pictures::new(REPORTED, ids_alone());
+    pictures.show(Specimen::Wires);
     let mut scores = [Scores::default(); 2];
-    for frame in [15.0, 60.0] {
-        for small in [&mut fine, &mut lined] {
-            turn(small, 16.0, frame / 90.0 * TAU);
-        }
-        fine.headless.step(3);
-        let truth = truth(&mut fine, size, FINE);
-        for (scores, bridge) in scores.iter_mut().zip([0, 3]) {
-            for width in [2.0, 1.0] {
-                lined.style(&ComicStyle::new().with(Outlines {
-                    gap_closing: bridge,
+    for angle in DISTANT_ANGLES {
+        let truth = pictures.turn(16.0, angle);
+        let lined = &mut pictures.lined;
+        for (scores, gap_closing) in scores.iter_mut().zip([0, 3]) {
+            let mut drawn = |width| {
+                lined.outlined(Outlines {
+                    gap_closing,
                     ..scored(width)
-                }));
-                lined.settle();
-                if width > 1.0 {
-                    scores.add(&truth, &inked(&lined));
-                } else {
-                    scores.add_thin(&inked(&lined), size.x);
-                }
-            }
+                });
+                inked(lined)
+            };
+            scores.add(&truth, &drawn(2.0));
+            scores.add_thin(&drawn(1.0), REPORTED.x);
         }
     }
-    let found = [0, 1].map(|i| {
-        let scores = &scores[i];
-        let bridge = [0, 3][i];
-        let (missed, wrong) = (scores.missed(), scores.wrong());
-        let fragments = scores.fragments();
-        println!("bridge {bridge}: missed {missed:.4}, wrong {wrong:.4}, fragments {fragments:.2}");
-        assert!(scores.wanted > 200, "{scores:?}");
-        (missed, wrong, fragments)
-    });
-    let [open, closed] = found;
-    assert!(closed.0 <= open.0, "{found:?}");
-    assert!(closed.1 <= open.1 + ADAPTER, "{found:?}");
-    assert!(closed.2 <= open.2, "{found:?}");
+    let [open, closed] = scores;
+    assert!(open.wanted > 200, "{scores:?}");
+    assert!(closed.missed() <= open.missed(), "{scores:?}");
+    assert!(closed.wrong() <= open.wrong() + ADAPTER, "{scores:?}");
+    assert!(closed.fragments() <= open.fragments(), "{scores:?}");
 }

@@ -3,6 +3,7 @@
 use bevy_comics_testkit::truth::{Truth, ids_alone, line_ends, mask};
 
 use crate::{
+    line_scenes::{deviation, silhouettes},
     outlines::{ink, look, put, removed},
     prelude::*,
     walls::{self, unit_per_pixel},
@@ -20,14 +21,7 @@ fn towards_the_sky() -> Small {
 
 /// A perspective view down -z of nothing.
 pub fn empty(small: &mut Small) {
-    small.restart(Msaa::Off);
-    small.clear();
-    look(small, Vec3::ZERO, Vec3::NEG_Z, 0.1);
-    small.insert(Projection::Perspective(PerspectiveProjection {
-        fov: std::f32::consts::FRAC_PI_2,
-        near: 0.1,
-        ..default()
-    }));
+    small.empty_view(Msaa::Off, Color::srgb(0.3, 0.5, 0.8));
 }
 
 /// A wall at a distance, from column `from` to column `to`.
@@ -44,13 +38,6 @@ fn row(small: &mut Small, outlines: Outlines) -> Vec<f32> {
     all[start..start + SIZE.x as usize].to_vec()
 }
 
-fn thin() -> Outlines {
-    Outlines {
-        width: 1.0,
-        ..Outlines::SILHOUETTES
-    }
-}
-
 /// Layers that lie close together on the screen keep all of their lines: a step of 5 %
 /// stays a line, 1 to 4 pixels from a step that is twenty times as high.
 #[test]
@@ -58,11 +45,10 @@ fn a_strong_edge_nearby_hides_no_edge() {
     let mut small = towards_the_sky();
     for gap in 1..=4 {
         empty(&mut small);
-        let step = 60.0 + gap as f32;
         wall(&mut small, -60.0, 60.0, 10.0);
-        wall(&mut small, 20.0, step, 10.5);
+        wall(&mut small, 20.0, 60.0 + gap as f32, 10.5);
         wall(&mut small, 20.0, 180.0, 21.0);
-        let row = row(&mut small, thin());
+        let row = row(&mut small, silhouettes(1.0));
         let lines: Vec<usize> = (0..120).filter(|x| row[*x] > 0.9).collect();
         assert_eq!(lines, [59, 59 + gap], "{gap} pixels apart: {row:?}");
     }
@@ -94,8 +80,7 @@ fn a_curved_rim_has_one_line() {
     }
     // Lines in all directions have 4 / pi cracks for each pixel of their length.
     let dashes = 100.0 * ends as f64 / (length as f64 * std::f64::consts::FRAC_PI_4);
-    println!("{ends} loose ends, {dashes:.2} per 100 pixels of line");
-    assert!(dashes < 0.5, "{dashes}");
+    assert!(dashes < 0.5, "{ends} loose ends, {dashes} per 100 pixels");
 }
 
 /// A jump too small to be seen leaves a wide line whole. 1.1 % is just above the first
@@ -108,11 +93,7 @@ fn a_faint_edge_cuts_nothing_out_of_a_wide_line() {
             empty(&mut small);
             wall(&mut small, -60.0, 60.0, 10.0);
             wall(&mut small, 20.0, 60.0 + gap, 10.11);
-            let outlines = Outlines {
-                width,
-                ..Outlines::SILHOUETTES
-            };
-            let row = row(&mut small, outlines);
+            let row = row(&mut small, silhouettes(width));
             let end = 60 + gap as usize;
             // Whole pixels within the line's half width of the edge.
             let half = (0.5 * width).floor() as usize;
@@ -123,18 +104,12 @@ fn a_faint_edge_cuts_nothing_out_of_a_wide_line() {
     }
 }
 
-/// Area of a strip through the middle of a disc.
-fn strip(radius: f64, width: f64) -> f64 {
-    let h = 0.5 * width;
-    2.0 * (h * (radius * radius - h * h).sqrt() + radius * radius * (h / radius).asin())
-}
-
 /// The ink of a line through the middle of a disc of 50 pixels, over the area of a strip of its
 /// width. The mean of four positions between the pixels. Lines of up to two pixels are as wide as
 /// asked within 0.02 pixels. Wider ones are drawn from the best two cracks of each column: in
 /// double precision, along 64 slopes at 16 offsets, this makes them up to 0.04 pixels thinner or
-/// wider (docs/benchmarks.md); 0.01 more is left for rounding to eight bits. Along cracks, lines at 0
-/// and 45 degrees are as wide as asked within a hundredth; between these angles, a line follows a
+/// wider (docs/benchmarks.md); 0.01 more is left for rounding to eight bits. Along cracks, lines at
+/// 0 and 45 degrees are as wide as asked within a hundredth; between these angles, a line follows a
 /// staircase and is wider.
 #[test]
 fn a_line_is_as_wide_as_asked_in_every_direction() {
@@ -148,31 +123,23 @@ fn a_line_of_any_width_is_as_wide_as_asked_in_every_direction() {
 }
 
 fn assert_as_wide_as_asked(widths: &[f32]) {
+    const DEGREES: [&[f32]; 2] = [&[0.0, 45.0], &[0.0, 9.0, 18.0, 27.0, 36.0, 45.0]];
     let mut small = towards_the_sky();
     let wall = half_plane(&mut small, 0.0, 0.0);
     for smooth in [false, true] {
-        let degrees: &[f32] = if smooth {
-            &[0.0, 9.0, 18.0, 27.0, 36.0, 45.0]
-        } else {
-            &[0.0, 45.0]
-        };
         for &width in widths {
             let lines = Outlines {
-                width,
                 smooth,
-                ..Outlines::SILHOUETTES
+                ..silhouettes(width)
             };
             ink(&mut small, lines);
-            for &degrees in degrees {
+            for &degrees in DEGREES[usize::from(smooth)] {
                 let off = mean_width(&mut small, wall, width, degrees) - f64::from(width);
-                println!("{width} px at {degrees} degrees, smooth: {smooth}: {off:+.4}");
                 let most = if width > 2.0 { 0.05 } else { 0.02 };
                 let along_cracks = if smooth { f64::INFINITY } else { 0.01 };
                 let most = f64::min(most, along_cracks * f64::from(width));
-                assert!(
-                    off.abs() <= most,
-                    "{width} px at {degrees} degrees, {smooth}: {off}"
-                );
+                let what = format!("{width} px at {degrees} degrees, smooth: {smooth}");
+                assert!(off.abs() <= most, "{what}: {off}");
             }
         }
     }
@@ -184,38 +151,22 @@ fn mean_width(small: &mut Small, wall: Entity, width: f32, degrees: f32) -> f64 
     let width = f64::from(width);
     let mut area = 0.0;
     for shift in [0.05f32, 0.3, 0.55, 0.8] {
-        let at = below_a_side(degrees.to_radians(), shift);
-        small.world().entity_mut(wall).insert(at);
+        small
+            .on(wall)
+            .insert(below_a_side(degrees.to_radians(), shift));
         small.headless.step(1);
-        let all = removed(small);
-        area += (0..all.len())
-            .filter(|i| {
-                let [x, y] = [i % 120, i / 120].map(|v| v as f64 - 59.5);
-                x.hypot(y) < RADIUS
-            })
-            .map(|i| f64::from(all[i]))
-            .sum::<f64>();
+        for (i, ink) in removed(small).into_iter().enumerate() {
+            let [x, y] = [i % 120, i / 120].map(|v| v as f64 - 59.5);
+            if x.hypot(y) < RADIUS {
+                area += f64::from(ink);
+            }
+        }
     }
-    area / (4.0 * strip(RADIUS, width)) * width
-}
-
-/// Widths across a straight line of a slope, column by column.
-fn widths(small: &mut Small, lines: Outlines, slope: f32) -> Vec<f64> {
-    half_plane(small, slope.atan(), 0.37);
-    let all = ink(small, lines);
-    let cosine = f64::from(slope.atan().cos());
-    (10..110)
-        .map(|x| {
-            let column: f64 = (0..120).map(|y| f64::from(all[y * 120 + x])).sum();
-            column * cosine
-        })
-        .collect()
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (squares / values.len() as f64).sqrt()
+    // Of a strip through the middle of the disc.
+    let h = 0.5 * width;
+    let side = (RADIUS * RADIUS - h * h).sqrt();
+    let strip = 2.0 * (h * side + RADIUS * RADIUS * (h / RADIUS).asin());
+    area / (4.0 * strip) * width
 }
 
 /// Along a straight edge, the width of its line is even: the standard deviation is below 0.1
@@ -226,18 +177,21 @@ fn straight_lines_have_an_even_width() {
     let mut sum = 0.0;
     for slope in [0.04f32, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9] {
         let [even, staircase] = [true, false].map(|smooth| {
+            half_plane(&mut small, slope.atan(), 0.37);
             let lines = Outlines {
-                width: 2.0,
                 smooth,
-                ..Outlines::SILHOUETTES
+                ..silhouettes(2.0)
             };
-            deviation(&widths(&mut small, lines, slope))
+            let all = ink(&mut small, lines);
+            let across = |x: usize| {
+                let column: f64 = (0..120).map(|y| f64::from(all[y * 120 + x])).sum();
+                column * f64::from(slope.atan().cos())
+            };
+            deviation(&(10..110).map(across).collect::<Vec<f64>>())
         });
-        println!("slope {slope}: {even:.4} px, along cracks {staircase:.4} px");
         assert!(even < 0.1, "slope {slope}: {even}");
-        if slope != 0.5 {
-            assert!(staircase > even, "slope {slope}: {staircase}, {even}");
-        }
+        let is_even = slope == 0.5 || staircase > even;
+        assert!(is_even, "slope {slope}: {staircase}, {even}");
         sum += staircase;
     }
     assert!(sum / 7.0 > 0.1, "the staircase is even: {sum}");
@@ -248,12 +202,8 @@ fn straight_lines_have_an_even_width() {
 fn half_plane(small: &mut Small, angle: f32, shift: f32) -> Entity {
     empty(small);
     small.insert(Projection::Orthographic(unit_per_pixel(SIZE)));
-    put(
-        small,
-        Rectangle::new(800.0, 800.0),
-        Color::WHITE,
-        below_a_side(angle, shift),
-    )
+    let wall = Rectangle::new(800.0, 800.0);
+    put(small, wall, Color::WHITE, below_a_side(angle, shift))
 }
 
 /// Where the wall of [`half_plane`] is.
@@ -270,9 +220,8 @@ fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
     let mut small = towards_the_sky();
     for width in [1.0, 2.0, 5.0] {
         let wall = half_plane(&mut small, 0.7, 0.3);
-        small.settle();
-        let plain = small.picture();
-        small.world().entity_mut(wall).insert(OutlineStyle {
+        let plain = small.settle().picture();
+        small.on(wall).insert(OutlineStyle {
             color: Some(Color::srgb(1.0, 0.0, 0.0)),
             ..default()
         });
@@ -280,13 +229,10 @@ fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
             color: Color::srgb(0.0, 0.0, 1.0),
             ..default()
         };
-        small.style(&ComicStyle::new().with(Outlines {
+        let lined = small.outlined(Outlines {
             silhouettes: Some(blue),
-            width,
-            ..Outlines::SILHOUETTES
-        }));
-        small.settle();
-        let lined = small.picture();
+            ..silhouettes(width)
+        });
         let mut inked = 0;
         for (a, b) in plain.pixels().zip(lined.pixels()) {
             if a.0[..3] == [255; 3] && b.0 != a.0 {
@@ -305,15 +251,13 @@ fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
 fn every_line_of_the_teapot_is_drawn() {
     let size = UVec2::new(320, 180);
     let studio = |fine: u32| {
-        let size = size * fine;
-        let options = HeadlessOptions { size, ..default() };
+        let options = options(size * fine);
         Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin)
     };
     let mut fine = studio(FINE);
     let world = fine.headless.app.world_mut();
-    world
-        .entity_mut(fine.camera)
-        .insert((DepthPrepass, NormalPrepass));
+    let prepasses = (DepthPrepass, NormalPrepass);
+    world.entity_mut(fine.camera).insert(prepasses);
     fine.shoot(Some(&ComicStyle::new().with(ids_alone())));
     let world = fine.headless.app.world();
     let view = world.get::<RenderEntity>(fine.camera).expect("drawn").id();

@@ -28,23 +28,12 @@ fn lines() -> MotionLines {
 impl Stage {
     fn new(lines: MotionLines) -> Self {
         let mut small = Small::new(SIZE, Msaa::Off);
-        small.clear();
-        let half_height = 0.05 * SIZE.y as f32;
-        small.insert((
-            Camera {
-                clear_color: Color::WHITE.into(),
-                ..default()
-            },
-            Transform::from_xyz(0.0, 0.0, half_height).looking_at(Vec3::ZERO, Vec3::Y),
-            Projection::Perspective(PerspectiveProjection {
-                fov: std::f32::consts::FRAC_PI_2,
-                ..default()
-            }),
-        ));
+        small.empty_view(Msaa::Off, Color::WHITE);
+        small.insert(Transform::from_xyz(0.0, 0.0, 0.05 * SIZE.y as f32));
         let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
         let start = Transform::from_xyz(-5.0, 0.0, 0.0);
         let mesh = small.put(Cuboid::from_size(2.0 * HALF), grey, start);
-        small.world().entity_mut(mesh).insert(lines);
+        small.on(mesh).insert(lines);
         small.headless.step(3);
         Self { small, mesh }
     }
@@ -53,46 +42,52 @@ impl Stage {
         self.small.world().resource::<Time>().elapsed_secs_f64()
     }
 
-    /// Steps while the box moves as a function of time says. Returns the time of the last frame.
-    fn fly(&mut self, frames: usize, place: impl Fn(f32) -> Transform) -> f32 {
-        let mut time = 0.0;
+    /// Steps while the box moves as a function of time says.
+    fn fly(&mut self, frames: usize, place: impl Fn(f32) -> Transform) {
         for _ in 0..frames {
-            time = (self.seconds() + 0.016_667) as f32;
-            let mut mesh = self.small.headless.app.world_mut().entity_mut(self.mesh);
-            mesh.insert(place(time));
+            let time = (self.seconds() + 0.016_667) as f32;
+            self.small.on(self.mesh).insert(place(time));
             self.small.headless.step(1);
         }
-        time
     }
 
     /// From left to right.
-    fn dash(&mut self, frames: usize) -> f32 {
+    fn dash(&mut self, frames: usize) {
         let begin = self.seconds() as f32;
-        self.fly(frames, |t| {
-            Transform::from_xyz(-5.0 + SPEED * (t - begin), 0.0, 0.0)
-        })
+        let place = |t| Transform::from_xyz(-5.0 + SPEED * (t - begin), 0.0, 0.0);
+        self.fly(frames, place)
+    }
+
+    /// Where the box is.
+    fn at(&mut self) -> Transform {
+        let at = self.small.world().get(self.mesh);
+        *at.expect("the box")
+    }
+
+    /// The ribbons that are shown, and the pixels of ink, are none.
+    fn assert_bare(&mut self, what: &str) {
+        assert_eq!((self.places().len(), self.ink().len()), (0, 0), "{what}");
     }
 
     /// Places of all ribbons in the world, of both sides, if they are shown.
     fn places(&mut self) -> Vec<Vec3> {
         let world = self.small.world();
-        let mut ribbons = world
-            .query_filtered::<(&Mesh3d, &GlobalTransform, &ViewVisibility), (Without<Object>,)>();
+        type Ribbon = (
+            &'static Mesh3d,
+            &'static GlobalTransform,
+            &'static ViewVisibility,
+        );
+        let mut ribbons = world.query_filtered::<Ribbon, Without<Object>>();
         let meshes = world.resource::<Assets<Mesh>>();
-        let mut places = Vec::new();
-        for (mesh, transform, visibility) in ribbons.iter(world) {
+        let shown = ribbons.iter(world).filter(|(.., shown)| shown.get());
+        let places = shown.flat_map(|(mesh, at, _)| {
             let mesh = meshes.get(&mesh.0).expect("a mesh");
-            let Some(VertexAttributeValues::Float32x3(list)) =
-                mesh.attribute(Mesh::ATTRIBUTE_POSITION)
-            else {
-                panic!("places")
-            };
-            if visibility.get() {
-                let place = |p: &[f32; 3]| transform.transform_point(Vec3::from(*p));
-                places.extend(list.iter().map(place));
-            }
-        }
-        places
+            let list = mesh.attribute(Mesh::ATTRIBUTE_POSITION);
+            let list = list.and_then(|list| list.as_float3()).expect("places");
+            list.iter()
+                .map(|place| at.transform_point(Vec3::from(*place)))
+        });
+        places.collect()
     }
 
     /// The number of entities with ribbons.
@@ -110,28 +105,22 @@ impl Stage {
     }
 }
 
-/// Lines of what moves straight on are the paths of points of its surface: at its height, behind it,
-/// from the gap to the whole duration. The tolerance is that of f32 at 10 units, and a microsecond.
+/// Lines of what moves straight on are the paths of points of its surface: at its height, behind
+/// it, from the gap to the whole duration. The tolerance is that of f32 at 10 units, and a
+/// microsecond.
 #[test]
 fn lines_are_the_paths_of_points_of_the_surface() {
     let mut stage = Stage::new(lines());
     stage.dash(30);
-    let now = stage
-        .small
-        .world()
-        .get::<Transform>(stage.mesh)
-        .expect("it")
-        .translation;
+    let now = stage.at().translation;
     let places = stage.places();
     assert!(places.len() > 100, "{}", places.len());
     let (gap, whole) = (0.1 * 0.25 * SPEED, 0.25 * SPEED);
     let (mut first, mut last) = (f32::INFINITY, f32::NEG_INFINITY);
     for place in places {
         let from = place - now;
-        assert!(
-            from.y.abs() <= HALF.y + 1e-5 && from.z.abs() <= HALF.z + 1e-5,
-            "{from}"
-        );
+        let is_within = from.y.abs() <= HALF.y + 1e-5 && from.z.abs() <= HALF.z + 1e-5;
+        assert!(is_within, "{from}");
         first = first.min(from.x);
         last = last.max(from.x);
     }
@@ -185,13 +174,9 @@ fn there_are_none_of_what_is_still_or_slow() {
     stage.dash(30);
     assert!(!stage.ink().is_empty());
     // It stops: when the duration is over, nothing is left.
-    let stop = *stage
-        .small
-        .world()
-        .get::<Transform>(stage.mesh)
-        .expect("it");
+    let stop = stage.at();
     stage.fly(20, |_| stop);
-    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0), "stopped");
+    stage.assert_bare("stopped");
 }
 
 #[test]
@@ -203,11 +188,8 @@ fn a_pause_keeps_them() {
     stage.small.headless.step(30);
     assert_eq!(stage.places(), places);
     assert_eq!(stage.small.picture(), picture);
-    stage
-        .small
-        .world()
-        .resource_mut::<Time<Virtual>>()
-        .unpause();
+    let mut time = stage.small.world().resource_mut::<Time<Virtual>>();
+    time.unpause();
     // Standing still, time goes on.
     stage.small.headless.step(20);
     assert_eq!(stage.ink().len(), 0);
@@ -216,16 +198,18 @@ fn a_pause_keeps_them() {
 #[test]
 fn they_begin_anew_at_a_jump_and_at_a_cut() {
     let mut stage = Stage::new(lines());
-    stage.dash(20);
-    assert!(!stage.ink().is_empty());
-    stage.fly(1, |_| Transform::from_xyz(2.0, 3.0, -1.0));
-    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0));
-    stage.dash(20);
-    assert!(!stage.ink().is_empty());
-    let camera = stage.small.camera;
-    stage.small.world().trigger(CameraCut { entity: camera });
-    stage.fly(1, |_| Transform::from_xyz(-1.0, 0.0, 0.0));
-    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0));
+    for (what, place) in [
+        ("a jump", Transform::from_xyz(2.0, 3.0, -1.0)),
+        ("a cut", Transform::from_xyz(-1.0, 0.0, 0.0)),
+    ] {
+        stage.dash(20);
+        assert!(!stage.ink().is_empty());
+        if what == "a cut" {
+            stage.small.cut();
+        }
+        stage.fly(1, |_| place);
+        stage.assert_bare(what);
+    }
 }
 
 /// Ribbons go with the object or its component, and wait while it is hidden. There is one entity
@@ -242,24 +226,16 @@ fn they_go_with_their_object() {
     }
     assert_eq!(meshes(&mut stage), before);
     let mesh = stage.mesh;
-    stage
-        .small
-        .world()
-        .entity_mut(mesh)
-        .insert(Visibility::Hidden);
+    stage.small.on(mesh).insert(Visibility::Hidden);
     stage.small.headless.step(2);
     assert!(stage.places().is_empty());
-    stage
-        .small
-        .world()
-        .entity_mut(mesh)
-        .insert(Visibility::Inherited);
+    stage.small.on(mesh).insert(Visibility::Inherited);
     stage.dash(20);
     assert!(!stage.places().is_empty());
-    stage.small.world().entity_mut(mesh).remove::<MotionLines>();
+    stage.small.on(mesh).remove::<MotionLines>();
     stage.small.headless.step(1);
     assert_eq!(stage.ribbons(), 0);
-    stage.small.world().entity_mut(mesh).insert(lines());
+    stage.small.on(mesh).insert(lines());
     stage.dash(20);
     assert_eq!(stage.ribbons(), 1);
     stage.small.world().despawn(mesh);
@@ -279,8 +255,8 @@ fn the_frame_rate_does_not_matter() {
         let begin = stage.seconds();
         for k in 1..=rate / 2 {
             let x = -5.0 + SPEED * k as f32 / rate as f32;
-            let mut mesh = stage.small.headless.app.world_mut().entity_mut(stage.mesh);
-            mesh.insert(Transform::from_xyz(x, 0.0, 0.0));
+            let at = Transform::from_xyz(x, 0.0, 0.0);
+            stage.small.on(stage.mesh).insert(at);
             stage.small.headless.step(1);
         }
         let passed = stage.seconds() - begin;
@@ -314,17 +290,15 @@ fn lines_are_as_wide_as_asked_in_pixels() {
             duration: 0.3,
             ..lines()
         };
-        stage.small.world().entity_mut(mesh).insert(one);
+        stage.small.on(mesh).insert(one);
         stage.dash(40);
         let picture = stage.small.picture();
         let column = |x: u32| black_ink(&picture, (0..SIZE.y).map(|y| (x, y)));
         let widest = (0..SIZE.x).map(column).fold(0.0, f64::max);
         // Before its head, the line has 0.85^0.8 = 0.88 of its width.
         let expected = 0.88 * f64::from(width);
-        assert!(
-            (widest - expected).abs() < 0.03 * expected + 0.02,
-            "{widest}, {expected}"
-        );
+        let off = (widest - expected).abs();
+        assert!(off < 0.03 * expected + 0.02, "{widest}, {expected}");
     }
 }
 
@@ -333,26 +307,22 @@ fn lines_are_as_wide_as_asked_in_pixels() {
 #[test]
 fn they_are_not_in_the_prepass() {
     let mut stage = Stage::new(lines());
-    stage.small.insert(Outlines {
-        objects: Some(ObjectEdges::default()),
-        ..default()
-    });
+    stage.small.insert(Outlines::default());
     stage.dash(40);
-    let shots = [true, false].map(|with| {
-        if !with {
-            let mesh = stage.mesh;
-            stage.small.world().entity_mut(mesh).remove::<MotionLines>();
-            stage.small.headless.step(2);
-        }
-        assert_eq!(!stage.places().is_empty(), with);
-        let depth = stage.small.depth().expect("a prepass");
-        let ids = stage.small.object_ids().expect("ids");
-        let normals = stage.small.normals().expect("normals");
+    let prepass = |stage: &mut Stage| {
         assert_eq!(stage.small.errors(), 0);
-        let ids: Vec<bool> = ids.pixels.iter().map(|id| id[0] != 0).collect();
-        (depth.bits, ids, normals.pixels)
-    });
-    assert!(shots[0] == shots[1]);
+        let depth = stage.small.depth().expect("a prepass").bits;
+        let normals = stage.small.normals().expect("normals").pixels;
+        let ids = stage.small.ids().into_iter().map(|id| id != 0);
+        (depth, normals, ids.collect::<Vec<bool>>())
+    };
+    assert!(!stage.places().is_empty());
+    let with = prepass(&mut stage);
+    let mesh = stage.mesh;
+    stage.small.on(mesh).remove::<MotionLines>();
+    stage.small.headless.step(2);
+    assert!(stage.places().is_empty());
+    assert!(with == prepass(&mut stage));
 }
 
 /// With the rate of a stepped animation, lines change in the same frames.
@@ -362,31 +332,20 @@ fn they_can_be_drawn_on_twos() {
         rate: 12.0,
         ..lines()
     });
-    let mesh = stage.mesh;
     stage
         .small
-        .world()
-        .entity_mut(mesh)
+        .on(stage.mesh)
         .insert(SteppedAnimation::default());
     stage.dash(30);
-    let mut changes = Vec::new();
-    let mut before = stage.small.picture();
-    for _ in 0..20 {
-        let now = stage.seconds() as f32;
-        let x = stage
-            .small
-            .world()
-            .get::<Transform>(mesh)
-            .expect("it")
-            .translation
-            .x;
-        stage.fly(1, |t| {
-            Transform::from_xyz(x + 0.2 * SPEED * (t - now), 0.0, 0.0)
-        });
-        let picture = stage.small.picture();
-        changes.push(picture != before);
-        before = picture;
-    }
-    let count = changes.iter().filter(|changed| **changed).count();
-    assert_eq!(count, 4, "{changes:?}");
+    let pictures = (0..=20).map(|frame| {
+        if frame > 0 {
+            let (now, at) = (stage.seconds() as f32, stage.at());
+            let step = |t: f32| 0.2 * SPEED * (t - now) * Vec3::X;
+            stage.fly(1, |t| Transform::from_translation(at.translation + step(t)));
+        }
+        stage.small.picture()
+    });
+    let pictures: Vec<_> = pictures.collect();
+    let changes = pictures.windows(2).filter(|two| two[0] != two[1]);
+    assert_eq!(changes.count(), 4);
 }

@@ -1,6 +1,7 @@
 //! Lines that go on beyond their loose ends.
 
 use crate::{
+    line_scenes::turned,
     outlines::{ink, put, removed},
     pictures::{assert_pass_matches_the_reference, outlined},
     prelude::*,
@@ -9,6 +10,7 @@ use crate::{
 
 /// Width and height of the picture in pixels; a unit of the scene is a pixel.
 const SIZE: usize = 96;
+const HALF: f32 = 0.5 * SIZE as f32;
 
 /// Silhouettes of one width, also where they crowd.
 pub fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
@@ -30,13 +32,8 @@ pub fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
     }
 }
 
-/// A step between two walls, along a line through the middle of the picture. It closes to the right,
-/// and its line ends there.
-fn closing_step() -> Small {
-    ClosingStep::new().small
-}
-
-/// The same step, to be turned.
+/// A step between two walls, along a line through the middle of the picture. It closes to the
+/// right, and its line ends there.
 struct ClosingStep {
     small: Small,
     walls: [Entity; 2],
@@ -45,30 +42,29 @@ struct ClosingStep {
 impl ClosingStep {
     fn new() -> Self {
         let mut small = towards_the_sky(UVec2::splat(SIZE as u32));
-        let sizes = [[400.0, 200.0], [400.0, 400.0]];
-        let walls = [0, 1].map(|i| {
-            let wall = Rectangle::from_size(sizes[i].into());
-            put(&mut small, wall, Color::WHITE, Self::places(0.0)[i])
+        let walls = [200.0, 400.0].map(|height| {
+            let wall = Rectangle::new(400.0, height);
+            put(&mut small, wall, Color::WHITE, Transform::IDENTITY)
         });
-        Self { small, walls }
+        let mut step = Self { small, walls };
+        step.turn(0.0);
+        step
     }
 
-    /// Where the walls are if the step closes in the direction of an angle.
-    fn places(angle: f32) -> [Transform; 2] {
+    /// Lets the step close in the direction of an angle.
+    fn turn(&mut self, angle: f32) {
         let turned = Quat::from_rotation_z(angle);
-        let front = turned * Vec3::new(0.0, 100.0, -50.0);
+        let front = Transform::from_translation(turned * Vec3::new(0.0, 100.0, -50.0));
         let slanted = turned * Quat::from_rotation_y(-30f32.to_radians());
-        [
-            Transform::from_translation(front).with_rotation(turned),
-            Transform::from_xyz(0.0, 0.0, -65.0).with_rotation(slanted),
-        ]
+        let back = Transform::from_xyz(0.0, 0.0, -65.0).with_rotation(slanted);
+        let [a, b] = self.walls;
+        self.small.on(a).insert(front.with_rotation(turned));
+        self.small.on(b).insert(back);
     }
 
     /// The ink of lines after the step was turned.
-    fn turned(&mut self, angle: f32) -> Vec<f32> {
-        for (wall, at) in self.walls.into_iter().zip(Self::places(angle)) {
-            self.small.world().entity_mut(wall).insert(at);
-        }
+    fn turned(&mut self, degrees: f32) -> Vec<f32> {
+        self.turn(degrees.to_radians());
         self.small.headless.step(1);
         removed(&self.small)
     }
@@ -76,13 +72,12 @@ impl ClosingStep {
 
 /// Sum of ink, and its centre, in pixels from the middle of the picture, y up.
 fn sum_and_centre(ink: &[f32]) -> (f32, Vec2) {
-    let half = 0.5 * SIZE as f32;
     let mut sum = 0.0;
     let mut moment = Vec2::ZERO;
     for (i, ink) in ink.iter().enumerate() {
         let place = Vec2::new(
-            (i % SIZE) as f32 + 0.5 - half,
-            half - (i / SIZE) as f32 - 0.5,
+            (i % SIZE) as f32 + 0.5 - HALF,
+            HALF - (i / SIZE) as f32 - 0.5,
         );
         sum += ink;
         moment += place * *ink;
@@ -99,32 +94,21 @@ fn lines_go_on_by_their_overshoot_in_every_direction() {
     for width in [2.0, 4.0] {
         let [short, by_3, by_10] = [0.0, 3.0, 10.0].map(|overshoot| {
             ink(&mut step.small, lines(width, overshoot, 0.0));
-            DEGREES.map(|degrees| step.turned(degrees.to_radians()))
+            DEGREES.map(|degrees| step.turned(degrees))
         });
         for (overshoot, long) in [(3.0, by_3), (10.0, by_10)] {
             for ((degrees, short), long) in DEGREES.iter().zip(&short).zip(&long) {
                 let along = Vec2::from_angle(degrees.to_radians());
                 let gained: Vec<f32> = long.iter().zip(short).map(|(a, b)| a - b).collect();
-                assert!(
-                    gained.iter().all(|ink| *ink > -0.02),
-                    "{degrees}: ink is lost"
-                );
                 let (sum, centre) = sum_and_centre(&gained);
-                let across = along.perp_dot(centre);
-                println!(
-                    "{degrees} degrees, {width} px: {overshoot} -> {:.2}, {across:.2} px aside",
-                    sum / width
-                );
-                assert!(
-                    (sum / width - overshoot).abs() < 0.5,
-                    "{degrees}: {}",
-                    sum / width
-                );
+                let what = format!("{degrees} degrees, {width} px, {overshoot}: {sum}, {centre}");
+                assert!(gained.iter().all(|ink| *ink > -0.02), "{what}: lost");
+                assert!((sum / width - overshoot).abs() < 0.5, "{what}");
                 // The end of a line lies on a crack, at most half a diagonal of a pixel aside,
                 // and its direction is within 5 degrees.
                 let most = 0.5f32.sqrt() + 0.5 * overshoot * 5f32.to_radians().tan();
-                assert!(across.abs() < most, "{degrees}: {across}");
-                assert!(along.dot(centre) > 15.0, "{degrees}: {centre}");
+                assert!(along.perp_dot(centre).abs() < most, "{what}");
+                assert!(along.dot(centre) > 15.0, "{what}");
             }
         }
     }
@@ -135,16 +119,15 @@ fn lines_go_on_by_their_overshoot_in_every_direction() {
 /// pixels is up to 0.15 pixels smaller or larger at these widths.
 #[test]
 fn blunt_ends_are_round() {
-    let half = 0.5 * SIZE as f32;
     let mut step = ClosingStep::new();
     for width in [4.0, 8.0f32] {
         ink(&mut step.small, lines(width, 0.0, 0.0));
         for (degrees, side) in [(0f32, 1), (90.0, 0), (180.0, 1), (270.0, 0)] {
             let along = Vec2::from_angle(degrees.to_radians());
-            let all = step.turned(degrees.to_radians());
+            let all = step.turned(degrees);
             let cracks = step.small.cracks().expect("lines");
             // How far a place is in the direction of the line.
-            let ahead = |x: f32, y: f32| along.dot(Vec2::new(x - half, half - y));
+            let ahead = |x: f32, y: f32| along.dot(Vec2::new(x - HALF, HALF - y));
             let across = [[1.0, 0.5], [0.5, 1.0]][side];
             let end = (0..cracks.words.len())
                 .filter(|i| cracks.words[*i][side] & 7 != 0)
@@ -158,11 +141,9 @@ fn blunt_ends_are_round() {
                 })
                 .sum();
             let want = 0.125 * std::f32::consts::PI * width * width;
-            println!("{degrees} degrees, {width} px: {beyond:.3}, {want:.3}");
-            assert!(
-                (beyond - want).abs() < std::f32::consts::PI / 24.0 + 0.15,
-                "{degrees} degrees, {width} px: {beyond}, {want}"
-            );
+            let most = std::f32::consts::PI / 24.0 + 0.15;
+            let what = format!("{degrees} degrees, {width} px: {beyond}, {want}");
+            assert!((beyond - want).abs() < most, "{what}");
         }
     }
 }
@@ -173,20 +154,14 @@ fn only_loose_ends_go_on() {
     let mut small = towards_the_sky(UVec2::splat(SIZE as u32));
     wall(&mut small, [-60.0, -60.0], [60.0, 60.0], 90.0);
     // The rim of a sphere, and two walls that partly hide it and each other.
-    put(
-        &mut small,
-        Sphere::new(20.0).mesh().uv(64, 32),
-        Color::WHITE,
-        Transform::from_xyz(-8.0, 6.0, -60.0),
-    );
-    for (i, turned) in [0.3f32, 1.1].into_iter().enumerate() {
-        put(
-            &mut small,
-            Rectangle::new(50.0, 14.0),
-            Color::WHITE,
-            Transform::from_xyz(10.0, -8.0 - 5.0 * i as f32, -30.0 + 10.0 * i as f32)
-                .with_rotation(Quat::from_rotation_z(turned)),
-        );
+    let sphere = Sphere::new(20.0).mesh().uv(64, 32);
+    let at = Transform::from_xyz(-8.0, 6.0, -60.0);
+    put(&mut small, sphere, Color::WHITE, at);
+    for at in [
+        turned(10.0, -8.0, -30.0, 0.3),
+        turned(10.0, -13.0, -20.0, 1.1),
+    ] {
+        put(&mut small, Rectangle::new(50.0, 14.0), Color::WHITE, at);
     }
     // The steps of pixels beside the rim of the sphere are no lines.
     let rims = |width, overshoot| Outlines {
@@ -208,31 +183,25 @@ fn only_loose_ends_go_on() {
 /// A line that tapers is thin at the end of its stroke, and wider where it would end without.
 #[test]
 fn tapered_lines_taper_to_the_end_of_their_stroke() {
-    let mut small = closing_step();
-    let profile = |small: &mut Small, overshoot, taper| -> Vec<f32> {
-        let ink = ink(small, lines(6.0, overshoot, taper));
-        (0..SIZE)
-            .map(|x| (0..SIZE).map(|y| ink[y * SIZE + x]).sum())
-            .collect()
+    let mut small = ClosingStep::new().small;
+    let mut profile = |overshoot, taper| -> Vec<f32> {
+        let ink = ink(&mut small, lines(6.0, overshoot, taper));
+        let column = |x| (0..SIZE).map(|y| ink[y * SIZE + x]).sum();
+        (0..SIZE).map(column).collect()
     };
-    let blunt = profile(&mut small, 0.0, 0.0);
+    let blunt = profile(0.0, 0.0);
     // The end is round: half of the width beyond the last crack.
-    let end = blunt
-        .iter()
-        .rposition(|width| *width > 0.01)
-        .expect("a line")
-        - 2;
+    let end = blunt.iter().rposition(|width| *width > 0.01);
+    let end = end.expect("a line") - 2;
     let [overshoot, taper] = [12.0f32, 20.0];
-    let found = profile(&mut small, overshoot, taper);
+    let found = profile(overshoot, taper);
     for (x, width) in found.iter().enumerate().take(end + 12).skip(end - 20) {
         // Cracks from the middle of this column to the end of the stroke.
         let left = (end as f32 + overshoot - x as f32 - 0.5).max(0.0);
         let t = (left / taper).min(1.0);
         let want = 6.0 * t * t * (3.0 - 2.0 * t);
-        assert!(
-            (width - want).abs() < 0.5,
-            "{x}: {width}, {want}: {found:.2?}"
-        );
+        let off = (width - want).abs();
+        assert!(off < 0.5, "{x}: {width}, {want}: {found:.2?}");
     }
     assert!(found[end + 13] < 0.05, "{found:.2?}");
 }
@@ -240,64 +209,51 @@ fn tapered_lines_taper_to_the_end_of_their_stroke() {
 /// Short lines have short strokes: none is longer than its line.
 #[test]
 fn strokes_are_not_longer_than_their_lines() {
-    let mut small = closing_step();
+    let mut small = ClosingStep::new().small;
     // Hides all but a few pixels of the line.
-    let x = 18.0 - 200.0;
-    put(
-        &mut small,
-        Rectangle::new(400.0, 400.0),
-        Color::WHITE,
-        Transform::from_xyz(x, 0.0, -51.0 + 3.0).with_rotation(Quat::IDENTITY),
-    );
-    let total = |small: &mut Small, overshoot| -> f32 {
-        ink(small, lines(2.0, overshoot, 0.0)).iter().sum()
-    };
-    let [short, long] = [0.0, 16.0].map(|overshoot| total(&mut small, overshoot));
+    wall(&mut small, [-382.0, -200.0], [18.0, 200.0], 48.0);
+    let [short, long] = [0.0, 16.0]
+        .map(|overshoot| -> f32 { ink(&mut small, lines(2.0, overshoot, 0.0)).iter().sum() });
     let gained = (long - short) / 2.0;
-    println!("gained {gained} px");
     assert!((2.0..8.5).contains(&gained), "{gained}");
 }
 
 #[test]
 fn strokes_match_the_reference() {
     let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
-    let loose = |width, overshoot, taper| Outlines {
-        width,
-        overshoot,
-        weight: LineWeight {
-            taper,
-            ..LineWeight::EVEN
-        },
+    for (width, overshoot, taper, amplitude) in [
+        (2.0, 5.0, 0.0, 0.0),
+        (1.0, 16.0, 0.0, 0.0),
+        (2.0, 7.5, 10.0, 0.0),
+        (5.0, 9.0, 24.0, 0.0),
+        (2.0, 8.0, 0.0, 2.0),
+    ] {
         // Many edges that end.
-        creases: Some(Creases {
-            angle: 100.0,
-            ..default()
-        }),
-        silhouettes: Some(Silhouettes {
+        let silhouettes = Silhouettes {
             threshold: 0.3,
             ..default()
-        }),
-        objects: None,
-        ..default()
-    };
-    for (width, overshoot, taper) in [
-        (2.0, 5.0, 0.0),
-        (1.0, 16.0, 0.0),
-        (2.0, 7.5, 10.0),
-        (5.0, 9.0, 24.0),
-    ] {
-        let what = format!("{width} px, overshoot {overshoot}, taper {taper}");
-        let style = outlined(loose(width, overshoot, taper));
-        assert_pass_matches_the_reference(&mut small, &style, None, &what);
-    }
-    let boiling = Outlines {
-        boil: LineBoil {
-            amplitude: 2.0,
+        };
+        let creases = Creases {
+            angle: 100.0,
+            ..default()
+        };
+        let boil = LineBoil {
+            amplitude,
             rate: 0.0,
             ..default()
-        },
-        ..loose(2.0, 8.0, 0.0)
-    };
-    assert_pass_matches_the_reference(&mut small, &outlined(boiling), None, "boiling");
+        };
+        let style = outlined(Outlines {
+            width,
+            overshoot,
+            weight: lines(width, overshoot, taper).weight,
+            objects: None,
+            silhouettes: Some(silhouettes),
+            creases: Some(creases),
+            boil,
+            ..default()
+        });
+        let what = format!("{width} px, {overshoot}, {taper}, boiling by {amplitude}");
+        assert_pass_matches_the_reference(&mut small, &style, None, &what);
+    }
     assert_eq!(small.errors(), 0);
 }

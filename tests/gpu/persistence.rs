@@ -1,87 +1,13 @@
 //! Lines that stay for some frames where their edges have become weak.
 
-use bevy_comics_testkit::reference::{
-    crack::{Crack, crack, jump},
-    link::{Place, joined, linked},
-    lives::Lives,
-    resolve::Resolved,
-};
-
 use crate::{
-    cracks::in_planes,
     line_quality::{show, turn},
+    line_scenes::silhouettes,
     outlines::removed,
-    pictures::{outlined, view_of},
+    pictures::outlined,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
-
-const SIZE: UVec2 = UVec2::new(101, 70);
-
-fn persistent(persistence: u32) -> Outlines {
-    Outlines {
-        hold_frames: persistence,
-        hysteresis: 3.0,
-        hysteresis_ratio: 0.3,
-        ..default()
-    }
-}
-
-/// The lines of every frame of a turning model, bit by bit.
-#[test]
-fn persistent_lines_match_the_reference() {
-    let mut small = Small::new(SIZE, Msaa::Off);
-    let mut kept = 0;
-    for (scene, persistence) in [(Specimen::Organic, 1), (Specimen::Organic, 4)] {
-        small.restart(Msaa::Off);
-        show(&mut small, scene);
-        let outlines = persistent(persistence);
-        let style = outlined(outlines);
-        turn(&mut small, 2.6, 0.4);
-        small.insert(VisibleDepthRange::default());
-        small.style(&style);
-        small.settle();
-        let mut lives = Lives::default();
-        for frame in 0..9 {
-            // The first frames stand still.
-            let turned = (frame as f32 - 5.0).max(0.0) * 0.012;
-            turn(&mut small, 2.6, 0.4 + turned);
-            small.headless.step(1);
-            let found = small.cracks().expect("lines");
-            let prepass = small.prepass().expect("depth");
-            let map = style.depth_map.unwrap_or_default();
-            let view = view_of(&mut small, &prepass, &map, found.rect);
-            let resolved =
-                Resolved::new(&prepass, |near| jump(&outlines) * view.jump_reference(near));
-            let seen = resolved.view(&view);
-            let [width, height] = SIZE.to_array().map(i64::from);
-            let all: HashMap<Place, Crack> = (0..width * height)
-                .flat_map(|i| [0, 1].map(|side| ([i % width, i / width], side)))
-                .filter_map(|(pixel, side)| {
-                    Some(((pixel, side), crack(&outlines, &seen, pixel, side, 1.0)?))
-                })
-                .collect();
-            let grown = joined(&linked(&all, outlines.hysteresis as i32), &all);
-            let found_ones = all.iter().filter(|(_, crack)| !crack.ledge);
-            let weak = found_ones.map(|(place, crack)| (*place, *crack)).collect();
-            let want = lives.next(&weak, &grown, persistence);
-            // Until the reference has seen as many frames as lines can stay.
-            if frame < 5 {
-                continue;
-            }
-            kept += want.len() - grown.len();
-            let lines = in_planes(&found, [0, 1]);
-            let differ: Vec<&Place> = lines.symmetric_difference(&want).collect();
-            assert!(
-                differ.is_empty(),
-                "{persistence}, frame {frame}: {differ:?}"
-            );
-        }
-        println!("{}: {kept} cracks kept", scene.name());
-    }
-    assert!(kept > 20, "{kept}");
-    assert_eq!(small.errors(), 0);
-}
 
 /// A view that stands still has the same lines with and without.
 #[test]
@@ -101,9 +27,9 @@ fn assert_unchanged(specimens: &[Specimen]) {
         small.restart(Msaa::Off);
         show(&mut small, specimen);
         turn(&mut small, 2.6, 1.1);
-        let pictures = [0, 8].map(|persistence| {
-            small.style(&ComicStyle::new().with(Outlines {
-                hold_frames: persistence,
+        let pictures = [0, 8].map(|hold_frames| {
+            small.style(&outlined(Outlines {
+                hold_frames,
                 ..default()
             }));
             // Until lines that were found by chance would be gone.
@@ -121,6 +47,9 @@ const STRONG: f32 = 0.95;
 const WEAK: f32 = 0.6;
 const NONE: f32 = 0.3;
 
+/// No multiples of 32, by which lines are packed.
+const SIZE: UVec2 = UVec2::new(98, 70);
+
 /// Two walls with a step between them.
 struct Step {
     small: Small,
@@ -130,33 +59,42 @@ struct Step {
 /// The height of a step, in units of the threshold: a fraction of 1.2 times the height of the
 /// view.
 fn height(step: f32) -> f32 {
-    step * Silhouettes::default().threshold * 1.2 * 64.0
+    step * Silhouettes::default().threshold * 1.2 * SIZE.y as f32
 }
 
 impl Step {
     fn new() -> Self {
-        let mut small = towards_the_sky(UVec2::new(96, 64));
+        let mut small = towards_the_sky(SIZE);
         wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
         let front = wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 100.0);
         Self { small, front }
     }
 
-    /// Draws a frame with a step, the edge at a place. Returns the width of the line.
-    fn frame(&mut self, step: f32, x: f32) -> f32 {
-        let height = height(step);
-        let front = self.front;
-        let at = Transform::from_xyz(x - 30.0, 0.0, -200.0 + height);
-        self.small.world().entity_mut(front).insert(at);
+    /// Draws a frame with an object at a place, in front of the wall. Returns the ink of all rows.
+    fn draw(&mut self, object: Entity, x: f32, height: f32) -> Vec<Vec<f32>> {
+        let at = Transform::from_xyz(x, 0.0, -200.0 + height);
+        self.small.on(object).insert(at);
         self.small.headless.step(1);
-        removed(&self.small)[32 * 96..33 * 96].iter().sum()
+        let ink = removed(&self.small);
+        let rows = ink.chunks_exact(SIZE.x as usize);
+        rows.map(<[f32]>::to_vec).collect()
     }
 
-    fn style(&mut self, persistence: u32) {
-        let outlines = Outlines {
-            hold_frames: persistence,
-            ..Outlines::SILHOUETTES
-        };
-        self.small.style(&ComicStyle::new().with(outlines));
+    /// Draws a frame with a step, the edge at a place. Returns the width of the line. All rows have
+    /// it in the same columns.
+    fn frame(&mut self, step: f32, x: f32) -> f32 {
+        let rows = self.draw(self.front, x - 30.0, height(step));
+        let inked = |row: &Vec<f32>| row.iter().map(|ink| *ink > 0.1).collect::<Vec<bool>>();
+        let columns: HashSet<Vec<bool>> = rows.iter().map(inked).collect();
+        assert_eq!(columns.len(), 1, "{columns:?}");
+        rows[32].iter().sum()
+    }
+
+    fn style(&mut self, width: f32, hold_frames: u32) {
+        self.small.style(&outlined(Outlines {
+            hold_frames,
+            ..silhouettes(width)
+        }));
     }
 
     /// A strong edge for some frames, after which all has settled.
@@ -167,21 +105,13 @@ impl Step {
         assert!(self.frame(STRONG, 0.0) > 1.5);
     }
 
-    /// Frames in which there is a line while the edge is like this, of 14.
-    fn stays(&mut self, step: f32, speed: f32) -> usize {
-        self.stays_within(14, step, speed)
-    }
-
-    fn stays_within(&mut self, frames: u32, step: f32, speed: f32) -> usize {
-        let frames: Vec<f32> = (1..=frames)
-            .map(|i| self.frame(step, speed * i as f32))
-            .collect();
-        let lines = frames.iter().take_while(|width| **width > 0.05).count();
-        assert!(
-            frames[lines..].iter().all(|width| *width < 0.05),
-            "{frames:.2?}"
-        );
-        lines
+    /// Frames in which there is a line while the edge is like this.
+    fn stays(&mut self, frames: u32, step: f32, speed: f32) -> u32 {
+        let widths = (1..=frames).map(|i| self.frame(step, speed * i as f32));
+        let lines: Vec<bool> = widths.map(|width| width > 0.05).collect();
+        let count = lines.iter().take_while(|line| **line).count();
+        assert!(lines[count..].iter().all(|line| !line), "{lines:?}");
+        count as u32
     }
 }
 
@@ -200,38 +130,31 @@ fn lines_stay_for_any_number_of_frames() {
 
 fn assert_stay_as_asked(numbers: &[u32]) {
     let mut step = Step::new();
-    for &persistence in numbers {
-        let frames = persistence + 6;
-        let stays = |step: &mut Step, height, speed| step.stays_within(frames, height, speed);
-        step.style(persistence);
+    for &asked in numbers {
+        let frames = asked + 6;
+        step.style(2.0, asked);
         // Until the lines of the last number are gone.
         for _ in 0..2 {
             step.frame(NONE, 0.0);
         }
-        let found = stays(&mut step, WEAK, 0.0);
-        assert_eq!(found, 0, "weak edges alone are no lines");
+        let alone = step.stays(frames, WEAK, 0.0);
+        assert_eq!(alone, 0, "weak edges alone are no lines");
+        for (what, height, speed, want) in [
+            ("resting", WEAK, 0.0, asked),
+            ("moving slowly", WEAK, 0.4, asked),
+            ("a ghost", NONE, 0.0, 0),
+            ("what moves far is not found again", WEAK, 5.0, 0),
+        ] {
+            step.strong();
+            assert_eq!(step.stays(frames, height, speed), want, "{what}");
+        }
         step.strong();
-        assert_eq!(stays(&mut step, WEAK, 0.0), persistence as usize);
-        // Slowly moving edges too.
+        step.small.cut();
+        assert_eq!(step.stays(frames, WEAK, 0.0), 0, "after a cut");
         step.strong();
-        assert_eq!(stays(&mut step, WEAK, 0.4), persistence as usize);
-        step.strong();
-        assert_eq!(stays(&mut step, NONE, 0.0), 0, "a ghost");
-        // What moves far is not found again.
-        step.strong();
-        assert_eq!(stays(&mut step, WEAK, 5.0), 0);
-        // Neither after a cut, nor with other settings.
-        step.strong();
-        let camera = step.small.camera;
-        step.small.world().trigger(CameraCut { entity: camera });
-        assert_eq!(stays(&mut step, WEAK, 0.0), 0, "after a cut");
-        step.strong();
-        step.small.style(&ComicStyle::new().with(Outlines {
-            hold_frames: persistence,
-            width: 1.9,
-            ..Outlines::SILHOUETTES
-        }));
-        assert_eq!(stays(&mut step, WEAK, 0.0), 0, "with another width");
+        step.style(1.9, asked);
+        let other = step.stays(frames, WEAK, 0.0);
+        assert_eq!(other, 0, "with another width");
         assert_eq!(step.small.errors(), 0);
     }
 }
@@ -251,17 +174,15 @@ fn lines_blink_only_without_enough_persistence() {
 
 fn assert_blinks(cases: [(u32, usize); 2]) {
     let mut step = Step::new();
-    for (persistence, blinks) in cases {
-        step.style(persistence);
+    for (hold_frames, blinks) in cases {
+        step.style(2.0, hold_frames);
         step.strong();
         let heights = (0..30).map(|frame| if frame % 5 < 3 { WEAK } else { STRONG });
-        let lines: Vec<bool> = heights
-            .map(|height| step.frame(height, 0.0) > 0.05)
-            .collect();
-        let ends = lines.windows(2).filter(|two| two[0] && !two[1]).count();
+        let lines = heights.map(|height| step.frame(height, 0.0) > 0.05);
         // The first frame follows one with a line.
-        let found = ends + usize::from(!lines[0]);
-        assert_eq!(found, blinks, "{persistence}: {lines:?}");
+        let lines: Vec<bool> = std::iter::once(true).chain(lines).collect();
+        let ends = lines.windows(2).filter(|two| two[0] && !two[1]).count();
+        assert_eq!(ends, blinks, "{hold_frames}: {lines:?}");
     }
 }
 
@@ -270,11 +191,11 @@ fn assert_blinks(cases: [(u32, usize); 2]) {
 fn lines_follow_motion_vectors() {
     let mut step = Step::new();
     step.small.insert((DepthPrepass, MotionVectorPrepass));
-    step.style(4);
-    step.strong();
-    assert_eq!(step.stays(WEAK, 5.0), 4);
-    step.strong();
-    assert_eq!(step.stays(WEAK, -3.3), 4);
+    step.style(2.0, 4);
+    for speed in [5.0, -3.3] {
+        step.strong();
+        assert_eq!(step.stays(14, WEAK, speed), 4, "{speed}");
+    }
     assert_eq!(step.small.errors(), 0);
 }
 
@@ -287,38 +208,28 @@ fn passing_lines_leave_no_trails() {
     step.small.world().despawn(front);
     for i in 0..14 {
         let x = -40.0 + 6.0 * i as f32;
-        let ends = [[x, -40.0], [x + 3.0, 40.0]];
-        wall(&mut step.small, ends[0], ends[1], 200.0 - height(WEAK));
+        let distance = 200.0 - height(WEAK);
+        wall(&mut step.small, [x, -40.0], [x + 3.0, 40.0], distance);
     }
-    let bar = wall(
-        &mut step.small,
-        [-6.0, -40.0],
-        [0.0, 40.0],
-        200.0 - height(3.0),
-    );
-    let mut woken = [0; 2];
-    for (count, persistence) in woken.iter_mut().zip([0usize, 6]) {
-        step.style(persistence as u32);
+    let distance = 200.0 - height(3.0);
+    let bar = wall(&mut step.small, [-6.0, -40.0], [0.0, 40.0], distance);
+    let woken = [0usize, 6].map(|hold_frames| {
+        step.style(2.0, hold_frames as u32);
+        let mut woken = 0;
         for frame in 0..45 {
             // The left side of the bar, in pixels.
             let left = 8 + frame;
-            let at = Transform::from_xyz(left as f32 - 48.0 + 3.0, 0.0, -200.0 + height(3.0));
-            step.small.world().entity_mut(bar).insert(at);
-            step.small.headless.step(1);
-            let ink = removed(&step.small);
-            let inked: Vec<usize> = (0..96).filter(|x| ink[32 * 96 + x] > 0.1).collect();
-            if frame < 10 {
-                continue;
+            let ink = &step.draw(bar, left as f32 - 49.0 + 3.0, height(3.0))[32];
+            let inked = (0..98).filter(|x| ink[*x] > 0.1);
+            let behind: Vec<usize> = inked.filter(|x| *x + 2 < left).collect();
+            if frame >= 10 {
+                let has_trail = behind.iter().any(|x| x + hold_frames + 3 < left);
+                assert!(!has_trail, "{hold_frames}, frame {frame}: {behind:?}");
+                woken += behind.len();
             }
-            let far = inked
-                .iter()
-                .filter(|x| **x + persistence + 3 < left)
-                .count();
-            assert_eq!(far, 0, "{persistence}, frame {frame}: {inked:?}");
-            *count += inked.iter().filter(|x| **x + 2 < left).count();
         }
-    }
-    println!("inked behind the bar: {woken:?}");
+        woken
+    });
     assert_eq!(woken[0], 0);
     assert!(woken[1] > 0, "nothing is woken");
     assert_eq!(step.small.errors(), 0);

@@ -1,83 +1,58 @@
 //! Lines in the colour of the surfaces that they belong to.
 
-use crate::{outlines::put, prelude::*};
+use image::RgbaImage;
+
+use crate::{
+    line_scenes::{alike, silhouettes, turned},
+    outlines::put,
+    prelude::*,
+};
 
 const SIZE: u32 = 80;
 
 /// A red square of 40 pixels in front of a blue sky.
-fn scene() -> (Small, Entity) {
-    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
-    let square = spawn(&mut small, Msaa::Off);
-    (small, square)
-}
-
-/// Starts over with the scene.
 fn spawn(small: &mut Small, msaa: Msaa) -> Entity {
-    small.restart(msaa);
-    small.clear();
-    let half = 0.5 * SIZE as f32;
-    small.insert((
-        Transform::IDENTITY,
-        Projection::Perspective(PerspectiveProjection {
-            fov: std::f32::consts::FRAC_PI_2,
-            ..default()
-        }),
-    ));
-    let camera = small.camera;
-    let mut camera = small.world().get_mut::<Camera>(camera).expect("a camera");
-    camera.clear_color = Color::linear_rgb(0.0, 0.0, 1.0).into();
-    put(
-        small,
-        Rectangle::new(40.4, 40.4),
-        Color::linear_rgb(0.8, 0.2, 0.2),
-        Transform::from_xyz(0.0, 0.0, -half),
-    )
+    small.empty_view(msaa, Color::linear_rgb(0.0, 0.0, 1.0));
+    let square = Rectangle::from_length(40.4);
+    let at = Transform::from_xyz(0.0, 0.0, -0.5 * SIZE as f32);
+    put(small, square, Color::linear_rgb(0.8, 0.2, 0.2), at)
 }
 
 fn lines(width: f32, darken: f32) -> Outlines {
     Outlines {
-        width,
         color: LineColor::Surface {
             darken,
             saturate: 1.0,
         },
-        ..Outlines::SILHOUETTES
+        ..silhouettes(width)
     }
 }
 
-/// Whether two colours are equal within a code of the picture.
-fn alike(a: [f64; 3], b: [f64; 3]) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.006)
+fn assert_alike(picture: &RgbaImage, x: u32, y: u32, want: [f64; 3]) {
+    let color = linear(picture, x, y);
+    assert!(alike(color, want), "{x}, {y}: {color:?}, {want:?}");
 }
 
 /// All pixels of a line have the darker colour of the square, also those in front of the
 /// sky, and also where the rim of the square is mixed with the sky.
 #[test]
 fn lines_have_the_colour_of_their_surface() {
-    let (mut small, _) = scene();
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         spawn(&mut small, msaa);
         for width in [2.0, 4.0, 12.0] {
-            small.style(&ComicStyle::default().with(lines(width, 0.5)));
-            small.settle();
-            let picture = small.picture();
+            let picture = small.outlined(lines(width, 0.5));
             let half = width as u32 / 2;
             // With four samples per pixel, the square begins and ends a pixel further out, and the
             // corners bend its sides: the outermost pixels of lines are not all ink.
             let out = u32::from(msaa != Msaa::Off);
             for middle in [20 - out, 60 + out] {
                 for x in middle - half + out..middle + half - out {
-                    let color = linear(&picture, x, 37);
-                    assert!(
-                        alike(color, [0.4, 0.1, 0.1]),
-                        "{msaa:?}, {width}, {x}: {color:?}"
-                    );
+                    assert_alike(&picture, x, 37, [0.4, 0.1, 0.1]);
                 }
             }
-            let sky = linear(&picture, 5, 5);
-            assert!(alike(sky, [0.0, 0.0, 1.0]), "{sky:?}");
-            let square = linear(&picture, 40, 40);
-            assert!(alike(square, [0.8, 0.2, 0.2]), "{square:?}");
+            assert_alike(&picture, 5, 5, [0.0, 0.0, 1.0]);
+            assert_alike(&picture, 40, 40, [0.8, 0.2, 0.2]);
         }
         assert_eq!(small.errors(), 0);
     }
@@ -87,29 +62,23 @@ fn lines_have_the_colour_of_their_surface() {
 /// alone, that before them.
 #[test]
 fn the_colour_is_that_of_the_styled_surface() {
-    let (mut small, square) = scene();
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
+    let square = spawn(&mut small, Msaa::Off);
     let grey = Desaturation {
         amount: 1.0,
         ..default()
     };
     let style = ComicStyle::default().with(lines(6.0, 0.5)).with(grey);
     small.style(&style);
-    small.settle();
-    let picture = small.picture();
+    let picture = small.settle().picture();
     let inside = linear(&picture, 40, 40);
     for x in 18..22 {
-        let color = linear(&picture, x, 37);
-        assert!(
-            alike(color, inside.map(|c| 0.5 * c)),
-            "{x}: {color:?}, {inside:?}"
-        );
+        assert_alike(&picture, x, 37, inside.map(|c| 0.5 * c));
     }
-    small.world().entity_mut(square).insert(NoStyle::default());
-    small.settle();
-    let picture = small.picture();
+    small.on(square).insert(NoStyle::default());
+    let picture = small.settle().picture();
     for x in 18..22 {
-        let color = linear(&picture, x, 37);
-        assert!(alike(color, [0.4, 0.1, 0.1]), "{x}: {color:?}");
+        assert_alike(&picture, x, 37, [0.4, 0.1, 0.1]);
     }
     assert_eq!(small.errors(), 0);
 }
@@ -118,18 +87,14 @@ fn the_colour_is_that_of_the_styled_surface() {
 /// through the steps of pixels lie away from the pixels that own them.
 #[test]
 fn slanted_lines_have_the_colour_of_their_surface() {
-    let (mut small, _) = scene();
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let square = spawn(&mut small, msaa);
         for width in [1.0, 2.0, 3.0, 7.5] {
-            small.style(&ComicStyle::default().with(lines(width, 0.5)));
-            small.settle();
-            for turned in [0.1, 0.35, 0.6, 0.785] {
-                let mut at = small
-                    .world()
-                    .get_mut::<Transform>(square)
-                    .expect("a square");
-                at.rotation = Quat::from_rotation_z(turned);
+            small.outlined(lines(width, 0.5));
+            for turn in [0.1, 0.35, 0.6, 0.785] {
+                let at = turned(0.0, 0.0, -0.5 * SIZE as f32, turn);
+                small.on(square).insert(at);
                 small.headless.step(1);
                 let picture = small.picture();
                 let [mut inked, mut wrong] = [0; 2];
@@ -144,14 +109,9 @@ fn slanted_lines_have_the_colour_of_their_surface() {
                 // In multisampled views, the pixel behind the rim may be mixed with the sky
                 // too, at corners.
                 let most = if msaa == Msaa::Off { 0 } else { inked / 20 };
-                assert!(
-                    wrong <= most,
-                    "{msaa:?}, {turned}, {width}: {wrong} of {inked}"
-                );
-                assert!(
-                    inked > (100.0 * width) as usize,
-                    "{msaa:?}, {turned}, {width}: {inked}"
-                );
+                let what = format!("{msaa:?}, {turn}, {width}: {wrong} of {inked}");
+                assert!(wrong <= most, "{what}");
+                assert!(inked > (100.0 * width) as usize, "{what}");
             }
         }
         assert_eq!(small.errors(), 0);

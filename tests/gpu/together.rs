@@ -1,5 +1,5 @@
-//! Every effect in views beside others, and on meshes that the engine draws in other ways: compared with
-//! views alone, and with plain meshes. The effects are in the groups of `pairwise`.
+//! Every effect in views beside others, and on meshes that the engine draws in other ways: compared
+//! with views alone, and with plain meshes. The effects are in the groups of `pairwise`.
 
 use bevy::{
     camera::{primitives::Aabb, visibility::NoAutoAabb},
@@ -8,6 +8,7 @@ use bevy::{
 use image::RgbaImage;
 
 use crate::{
+    line_scenes::skinned,
     pairwise::{
         checks::assert_drawn_by,
         compare::{changed, crop},
@@ -15,6 +16,7 @@ use crate::{
     },
     prelude::*,
     small,
+    transparent_lines::change,
 };
 
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -143,7 +145,7 @@ fn assert_drawn_as_alone(groups: &[Group]) {
 struct Things {
     boxes: [Entity; 2],
     pane: Entity,
-    cubes: Vec<Entity>,
+    cubes: [Entity; 9],
 }
 
 /// A box with three different sides.
@@ -159,9 +161,6 @@ fn bounds() -> impl Bundle {
     };
     (bounds, NoAutoAabb)
 }
-
-/// The colour of the second box.
-const GREEN: Color = Color::srgb(0.15, 0.6, 0.3);
 
 /// Where the boxes are: turned about the vertical axis.
 fn places() -> [Transform; 2] {
@@ -179,10 +178,10 @@ fn put_things(small: &mut Small) -> Things {
     let [left, right] = places();
     let boxes = [
         small.put(slab(), unlit(Color::srgb(0.85, 0.2, 0.15)), left),
-        small.put(slab(), unlit(GREEN), right),
+        small.put(slab(), unlit(Color::srgb(0.15, 0.6, 0.3)), right),
     ];
     for entity in boxes {
-        small.world().entity_mut(entity).insert(bounds());
+        small.on(entity).insert(bounds());
     }
     let turned = Quat::from_euler(EulerRot::XYZ, 0.5, 0.7, 0.1);
     let pane = small.put(
@@ -190,67 +189,33 @@ fn put_things(small: &mut Small) -> Things {
         unlit(Color::srgb(0.3, 0.8, 0.9)),
         Transform::from_xyz(0.1, 1.2, 1.6).with_rotation(turned),
     );
-    let cubes = (0..9).map(|k| {
+    let cubes = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| {
         let at = Transform::from_xyz(0.55 * k as f32 - 2.2, 0.3, -1.6);
         let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
         small.put(Cuboid::from_length(0.4), grey, at)
     });
-    let cubes = cubes.collect();
     Things { boxes, pane, cubes }
-}
-
-fn change_pane(small: &mut Small, things: &Things, alpha_mode: AlphaMode) {
-    let world = small.world();
-    let material = world.get::<MeshMaterial3d<StandardMaterial>>(things.pane);
-    let id = material.expect("it has one").0.id();
-    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-    let mut material = materials.get_mut(id).expect("it is there");
-    material.alpha_mode = alpha_mode;
 }
 
 /// One mesh and one material for all cubes: the engine draws them as instances.
 fn share(small: &mut Small, things: &Things) {
-    let world = small.world();
-    let mesh = world
-        .get::<Mesh3d>(things.cubes[0])
-        .expect("a mesh")
-        .clone();
-    let material = world.get::<MeshMaterial3d<StandardMaterial>>(things.cubes[0]);
-    let material = material.expect("a material").clone();
+    let first = small.on(things.cubes[0]);
+    let (mesh, material) = first.components::<(&Mesh3d, &MeshMaterial3d<StandardMaterial>)>();
+    let shared = (mesh.clone(), material.clone());
     for cube in &things.cubes {
-        let mut cube = world.entity_mut(*cube);
-        cube.insert((mesh.clone(), material.clone()));
+        small.on(*cube).insert(shared.clone());
     }
 }
 
-/// A joint takes the place of the first box's transform. A quarter turn of the entity itself, which the
-/// bounds do not show, changes nothing.
+/// A joint takes the place of the first box's transform. A quarter turn of the entity itself, which
+/// the bounds do not show, changes nothing.
 fn skin(small: &mut Small, things: &Things) {
-    let mut mesh = slab();
-    let count = mesh.count_vertices();
-    mesh.insert_attribute(
-        Mesh::ATTRIBUTE_JOINT_INDEX,
-        VertexAttributeValues::Uint16x4(vec![[0; 4]; count]),
-    );
-    mesh.insert_attribute(
-        Mesh::ATTRIBUTE_JOINT_WEIGHT,
-        vec![[1.0, 0.0, 0.0, 0.0]; count],
-    );
     let [at, _] = places();
     let quarter = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
     let turned = at.with_rotation(at.rotation * quarter);
-    let world = small.world();
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-    let inverse_bindposes = world
-        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
-        .add(SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]));
-    let joints = vec![world.spawn((Object, at)).id()];
-    let skin = SkinnedMesh {
-        inverse_bindposes,
-        joints,
-    };
-    let mut entity = world.entity_mut(things.boxes[0]);
-    entity.insert((Mesh3d(mesh), skin, turned));
+    let joint = small.world().spawn((Object, at)).id();
+    let skin = skinned(small, slab(), &[joint], |_| 0);
+    small.on(things.boxes[0]).insert((skin, turned));
 }
 
 /// The pictures of groups.
@@ -280,8 +245,8 @@ fn assert_same(before: &[RgbaImage], now: &[RgbaImage], most: f64, what: &str) {
     }
 }
 
-/// Instances, blended meshes with `DepthWrite` and skinned meshes have the picture of plain meshes that
-/// have their shape and colour.
+/// Instances, blended meshes with `DepthWrite` and skinned meshes have the picture of plain meshes
+/// that have their shape and colour.
 #[test]
 fn meshes_of_every_kind_are_drawn_as_plain_ones() {
     assert_drawn_as_plain(&[ALL], 1);
@@ -298,6 +263,7 @@ fn meshes_of_every_kind_are_drawn_as_plain_ones_by_each_group() {
 fn assert_drawn_as_plain(groups: &[Group], see_depth: usize) {
     let mut small = app();
     let things = put_things(&mut small);
+    let pane = things.pane;
     let seat = Seat {
         target: target(&mut small),
         part: None,
@@ -309,17 +275,16 @@ fn assert_drawn_as_plain(groups: &[Group], see_depth: usize) {
     let shared = shoot(&mut small, "instanced");
     assert_same(&plain, &shared, 0.0, "instanced");
 
-    change_pane(&mut small, &things, AlphaMode::Blend);
+    change(&mut small, pane, |m| m.alpha_mode = AlphaMode::Blend);
     let unseen = shoot(&mut small, "blended");
     let differ = apart(&plain, &unseen).filter(|off| *off > 0.0).count();
     assert!(differ >= see_depth, "without `DepthWrite`, it is not seen");
-    let pane = things.pane;
-    small.world().entity_mut(pane).insert(DepthWrite::default());
+    small.on(pane).insert(DepthWrite::default());
     let blended = shoot(&mut small, "blended, with depth");
     assert_same(&plain, &blended, 0.0, "blended, with depth");
     // Plain again: what is next is compared alone.
-    small.world().entity_mut(pane).remove::<DepthWrite>();
-    change_pane(&mut small, &things, AlphaMode::Opaque);
+    small.on(pane).remove::<DepthWrite>();
+    change(&mut small, pane, |m| m.alpha_mode = AlphaMode::Opaque);
 
     // The GPU adds up joints: a vertex may be off by a last bit.
     let most = 0.01;

@@ -1,53 +1,72 @@
-//! Wide lines against an exhaustive search.
+//! Lines of which pixels search many cracks: wide ones, against an exhaustive search, and those
+//! along diagonal runs, where cracks to the east and to the south take turns.
 
-use bevy_comics_testkit::reference::{crack::Crack, draw::Cracks, view::View};
+use bevy_comics_testkit::reference::draw::Cracks;
 
 use crate::{
-    pictures::{assert_pass_matches_the_reference, frame, outlined},
+    line_scenes::{silhouettes, turned},
+    outlines::put,
+    pictures::{assert_pass_matches_the_reference, outlined, view_of},
     prelude::*,
+    walls::towards_the_sky,
 };
 
 #[test]
 fn wide_lines_match_the_reference() {
-    assert_wide_as_reference(&[6.5, 16.0]);
-}
-
-#[test]
-#[ignore = "long: more widths"]
-fn lines_of_more_widths_match_the_reference() {
-    assert_wide_as_reference(&[5.0, 8.0, 12.0]);
-}
-
-fn assert_wide_as_reference(widths: &[f32]) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for &width in widths {
+    for width in [6.5, 16.0] {
         let style = outlined(Outlines { width, ..default() });
         assert_pass_matches_the_reference(&mut small, &style, None, &format!("{width} px"));
     }
+}
+
+/// Runs near the diagonals are short, long, longer than is looked, and without an end; those of
+/// discs, and of squares on their corners, end at curves and corners.
+#[test]
+fn lines_near_diagonals_match_the_reference() {
+    let mut small = towards_the_sky(UVec2::splat(72));
+    for quarter in [0.0, 90.0, 180.0, 270.0] {
+        for from_diagonal in [-6.3, 0.0, 0.9] {
+            let degrees: f32 = quarter + 45.0 + from_diagonal;
+            small.clear();
+            let turn = Quat::from_rotation_z(degrees.to_radians());
+            let middle = Vec3::new(0.0, 0.23, -10.0) + turn * Vec3::new(0.0, -200.0, 0.0);
+            let at = Transform::from_translation(middle).with_rotation(turn);
+            put(&mut small, Rectangle::from_length(400.0), Color::WHITE, at);
+            let (style, what) = (outlined(silhouettes(2.0)), format!("{degrees} degrees"));
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
+        }
+    }
+    for radius in [11.0, 14.0, 21.7, 30.3] {
+        small.clear();
+        let at = Transform::from_xyz(0.31, -0.17, -10.0);
+        put(&mut small, Circle::new(radius), Color::WHITE, at);
+        let square = Rectangle::from_length(0.9 * radius);
+        put(
+            &mut small,
+            square,
+            Color::WHITE,
+            turned(0.1, 0.4, -5.0, 0.8),
+        );
+        for width in [1.0, 3.0] {
+            let (style, what) = (
+                outlined(silhouettes(width)),
+                format!("{radius}, {width} px"),
+            );
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
 }
 
 /// Over all pixels of a scene: the mean difference of ink between the search by columns and
 /// an exhaustive search, and the fraction of pixels where it is above two codes.
 fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2] {
     small.insert(VisibleDepthRange::default());
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
-    let depth = small.depth().expect("a prepass");
-    let (normals, ids) = (small.normals(), small.object_ids());
-    let [width, height] = [depth.width, depth.bits.len() as u32 / depth.width];
-    let view = View {
-        viewport: [0, 0, width, height],
-        samples: depth.samples,
-        width,
-        depth_bits: &depth.bits,
-        frame: frame(small, &DepthMap::default()),
-        flip: false,
-        normals: normals.as_ref(),
-        ids: ids.as_ref(),
-        widths: None,
-        height: 0.0,
-        to_light: [0.0, 1.0, 0.0],
-    };
+    small.outlined(outlines);
+    let prepass = small.prepass().expect("a prepass");
+    let [width, height] = small.headless.options.size.to_array();
+    let view = view_of(small, &prepass, &DepthMap::default(), [0, 0, width, height]);
     let cracks = Cracks::new(&outlines, &view, 1.0);
     let (mut sum, mut apart) = (0.0, 0.0);
     let pixels = f64::from(width * height);
@@ -61,43 +80,6 @@ fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2]
         apart += f64::from(u8::from(difference > 2.0 / 255.0)) / pixels;
     }
     [sum, apart]
-}
-
-/// A vertical silhouette whose ink and width change at a row: neither part hides the
-/// other, though columns rank cracks by their ink at one height.
-#[test]
-fn a_faint_part_of_a_wide_line_is_as_wide_as_a_strong_one() {
-    const SIZE: i64 = 64;
-    for (ink, half_width) in [(0.6, 8.0), (0.3, 8.0), (0.1, 8.0), (1.0, 2.0), (1.0, 4.0)] {
-        let crack = |x: i64, y: i64| {
-            let below = y >= SIZE / 2;
-            let crack = Crack {
-                kinds: [true, false, false],
-                mine: true,
-                ink: if below { ink } else { 1.0 },
-                opacity: 1.0,
-                half_width: if below { half_width } else { 8.0 },
-                certain: true,
-                ledge: false,
-                bend: [0.0; 2],
-                shifts: true,
-            };
-            [(x == SIZE / 2).then_some(crack), None]
-        };
-        let cracks = (0..SIZE * SIZE)
-            .map(|i| crack(i % SIZE, i / SIZE))
-            .collect();
-        let cracks = Cracks::from_cracks(cracks, SIZE, 8.0);
-        for i in 0..SIZE * SIZE {
-            let at = [(i % SIZE) as f64 + 0.5, (i / SIZE) as f64 + 0.5];
-            let found = cracks.ink(at, 0.0)[0];
-            let want = cracks.exhaustive_ink(at, 0.0)[0];
-            assert!(
-                (found - want).abs() < 2.0 / 255.0,
-                "ink {ink}, half width {half_width}, at {at:?}: {found}, not {want}"
-            );
-        }
-    }
 }
 
 /// Columns leave out cracks that others in the same column surpass at its own height. That
@@ -118,28 +100,25 @@ fn assert_columns_are_exhaustive(widths: &[f32]) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for &width in widths {
         for (width_fade, softness) in [(0.0, 0.5), (0.6, 0.5), (0.0, 1.0)] {
+            let silhouettes = Silhouettes {
+                softness,
+                ..default()
+            };
+            let creases = Creases {
+                softness,
+                ..default()
+            };
             let outlines = Outlines {
                 width,
                 width_fade,
-                silhouettes: Some(Silhouettes {
-                    softness,
-                    ..default()
-                }),
-                creases: Some(Creases {
-                    softness,
-                    ..default()
-                }),
+                silhouettes: Some(silhouettes),
+                creases: Some(creases),
                 ..default()
             };
             let [mean, apart] = columns_against_exhaustive(&mut small, outlines);
-            println!(
-                "{width} px, width_fade {width_fade}, softness {softness}: mean {mean:.6}, apart {apart:.5}"
-            );
-            assert!(mean < 0.1 / 255.0, "{width} px, {width_fade}: mean {mean}");
-            assert!(
-                apart < 0.005,
-                "{width} px, {width_fade}: {apart} of the pixels"
-            );
+            let what = format!("{width} px, {width_fade}, {softness}");
+            assert!(mean < 0.1 / 255.0, "{what}: mean {mean}");
+            assert!(apart < 0.005, "{what}: {apart} of the pixels");
         }
     }
 }
