@@ -1,6 +1,6 @@
 //! The second axis of ramps: where tones change, against its definition.
 
-use bevy_comics_testkit::reference::detail;
+use bevy_comics_testkit::reference::{detail, toon::tones::Tones};
 use image::RgbaImage;
 
 use crate::{
@@ -27,13 +27,10 @@ pub fn two_tones(axis: DetailAxis, mode: RampMode) -> ToonLight {
 
 /// Largest difference of a pixel from the colour at a detail, in codes of linear light.
 pub fn off(picture: &RgbaImage, x: u32, y: u32, amount: f64) -> f64 {
-    let ramp = Ramp::new([RampStop::new(0.0, ORANGE)]);
-    let plain = [RampStop::new(0.0, BLUE)];
-    let wanted = detail::tone(&ramp, &plain, amount, 1.0, 0.0);
-    let found = linear(picture, x, y);
-    (0..3)
-        .map(|c| (found[c] - wanted[c]).abs() * 255.0)
-        .fold(0.0, f64::max)
+    let light = two_tones(DetailAxis::Constant(1.0), RampMode::PerLight);
+    let tones = Tones::new(&light.ramp.expect("a ramp"), amount);
+    let found = DVec3::from_array(linear(picture, x, y));
+    (found - tones.at(1.0, 0.0)).abs().max_element() * 255.0
 }
 
 /// Checks that with all or no detail, one of the ramps alone is drawn.

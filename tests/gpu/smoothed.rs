@@ -3,11 +3,10 @@
 
 use bevy::{camera::visibility::NoFrustumCulling, mesh::morph::MorphAttributes};
 use bevy_comics_testkit::reference::octahedral::octahedral;
-use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{apart, bright, drawn, put, room, set_light, sun, with},
+    ramp::{apart, bright, differ, drawn, put, room, set_light, sun, with},
 };
 
 const SIZE: UVec2 = UVec2::new(128, 128);
@@ -88,13 +87,6 @@ fn with_normals(mut mesh: Mesh, codes: &[[i16; 2]]) -> Mesh {
     let normals: Vec<_> = codes.iter().map(|c| normal(c).map(|x| x as f32)).collect();
     mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
     mesh
-}
-
-/// Pixels that differ by more than this many codes.
-fn differ(a: &RgbaImage, b: &RgbaImage, codes: u8) -> usize {
-    let pairs = a.pixels().zip(b.pixels());
-    let apart = pairs.filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > codes);
-    apart.count()
 }
 
 /// The picture of smoothed normals is that of a mesh that has them as its own: here on entities that

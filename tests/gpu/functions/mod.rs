@@ -50,6 +50,7 @@ mod ramp_map;
 mod rect;
 mod remember;
 mod remember_places;
+mod ribbon;
 mod rows;
 mod settings;
 mod shadow_texels;

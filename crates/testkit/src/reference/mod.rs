@@ -2,7 +2,6 @@
 //! that it mirrors. It is written from the definition, not from the shader.
 
 pub mod abstraction;
-pub mod art_map;
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
@@ -60,8 +59,6 @@ pub mod paper;
 pub mod ping_pong;
 pub mod planes;
 pub mod pressure;
-pub mod proxy;
-pub mod ramp;
 pub mod ramp_map;
 pub mod range;
 pub mod raw;
@@ -69,7 +66,6 @@ pub mod read;
 pub mod rect;
 pub mod remember;
 pub mod resolve;
-pub mod ribbon;
 mod rim;
 pub mod rows;
 pub mod screen;
@@ -81,7 +77,6 @@ pub mod smoothing;
 pub mod speed_lines;
 pub mod stipple;
 mod straight;
-pub mod stroke_level;
 pub mod stylized_highlight;
 pub mod surface;
 pub mod tolerance;
