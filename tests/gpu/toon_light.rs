@@ -1,13 +1,16 @@
 //! The toon material under every kind of light of the engine, beside the standard material.
 
 use bevy::{
-    light::{EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight},
-    pbr::{ContactShadows, DistanceFog, FogFalloff, Lightmap},
+    light::{
+        Atmosphere, EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight,
+        atmosphere::ScatteringMedium,
+    },
+    pbr::{AtmosphereSettings, ContactShadows, DistanceFog, FogFalloff, Lightmap},
     render::render_resource::{TextureViewDescriptor, TextureViewDimension},
 };
 use image::RgbaImage;
 
-use crate::prelude::*;
+use crate::{prelude::*, ramp::apart};
 
 /// The exposure of a camera with default settings.
 fn exposure() -> f32 {
@@ -23,33 +26,37 @@ fn dark_of(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
     small.clear();
     small.insert(Exposure::default());
-    small.world().insert_resource(GlobalAmbientLight {
-        brightness: 0.0,
-        ..default()
-    });
+    small.world().insert_resource(GlobalAmbientLight::NONE);
     small
 }
 
-/// An image of one colour per layer, in linear light.
-fn layers(
-    small: &mut Small,
-    size: Extent3d,
-    dimension: TextureDimension,
-    colors: &[Vec3],
-) -> Handle<Image> {
+/// An image of one colour per texel, in linear light.
+fn image(small: &mut Small, size: [u32; 3], colors: &[Vec3]) -> Handle<Image> {
+    let [width, height, depth_or_array_layers] = size;
+    let size = Extent3d {
+        width,
+        height,
+        depth_or_array_layers,
+    };
     let data = colors
         .iter()
         .flat_map(|c| c.extend(1.0).to_array())
         .flat_map(|x| half::f16::from_f32(x).to_le_bytes())
         .collect();
+    let is_volume = height > 1;
+    let dimension = match is_volume {
+        true => TextureDimension::D3,
+        false => TextureDimension::D2,
+    };
+    let format = TextureFormat::Rgba16Float;
     let mut image = Image::new(
         size,
         dimension,
         data,
-        TextureFormat::Rgba16Float,
+        format,
         RenderAssetUsages::RENDER_WORLD,
     );
-    if dimension == TextureDimension::D2 && colors.len() == 6 {
+    if depth_or_array_layers == 6 {
         image.texture_view_descriptor = Some(TextureViewDescriptor {
             dimension: Some(TextureViewDimension::Cube),
             ..default()
@@ -61,12 +68,7 @@ fn layers(
 /// An environment of six colours, in the order +X, -X, +Y, -Y and towards -Z, +Z. A
 /// colour of 1 is white in the picture.
 fn environment(small: &mut Small, colors: [Vec3; 6]) -> EnvironmentMapLight {
-    let size = Extent3d {
-        width: 1,
-        height: 1,
-        depth_or_array_layers: 6,
-    };
-    let map = layers(small, size, TextureDimension::D2, &colors);
+    let map = image(small, [1, 1, 6], &colors);
     EnvironmentMapLight {
         diffuse_map: map.clone(),
         specular_map: map,
@@ -100,12 +102,6 @@ fn both(small: &mut Small, objects: &[Entity], light: ToonLight) -> (RgbaImage, 
     (standard, toon)
 }
 
-/// The largest difference of a channel, in codes.
-fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
-    let pairs = a.as_raw().iter().zip(b.as_raw());
-    pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
-}
-
 /// The light in the middle of the picture.
 fn middle(picture: &RgbaImage) -> Vec3 {
     let (x, y) = (picture.width() / 2, picture.height() / 2);
@@ -114,11 +110,8 @@ fn middle(picture: &RgbaImage) -> Vec3 {
 
 fn ball(small: &mut Small) -> Entity {
     let at = Transform::from_xyz(0.0, 0.4, 0.0);
-    small.put(
-        Sphere::new(1.6).mesh().uv(64, 32),
-        plain(Color::srgb(0.8, 0.7, 0.6)),
-        at,
-    )
+    let color = plain(Color::srgb(0.8, 0.7, 0.6));
+    small.put(Sphere::new(1.6).mesh().uv(64, 32), color, at)
 }
 
 const SKY: [Vec3; 6] = [
@@ -138,17 +131,6 @@ fn smooth_light() -> ToonLight {
     }
 }
 
-#[test]
-fn a_white_environment_lights_as_on_the_standard_material() {
-    let mut small = dark();
-    let white = environment(&mut small, [Vec3::splat(0.6); 6]);
-    small.insert(white);
-    let ball = ball(&mut small);
-    let (standard, toon) = both(&mut small, &[ball], ToonLight::default());
-    assert!(middle(&toon).x > 0.2, "{:?}", middle(&toon));
-    assert!(apart(&standard, &toon) <= 1);
-}
-
 /// `flat_environment` 0 is the standard material's light; 1 has the two tones of the
 /// brightest side and of the opposite one.
 #[test]
@@ -156,11 +138,9 @@ fn an_environment_is_smooth_or_two_tones_with_its_mean() {
     let mut small = dark();
     let sky = environment(&mut small, SKY);
     small.insert(sky);
-    let white = small.put(
-        Sphere::new(1.6).mesh().uv(64, 32),
-        plain(Color::WHITE),
-        Transform::from_xyz(0.0, 0.4, 0.0),
-    );
+    let at = Transform::from_xyz(0.0, 0.4, 0.0);
+    let ball = Sphere::new(1.6).mesh().uv(64, 32);
+    let white = small.put(ball, plain(Color::WHITE), at);
     let (standard, smooth) = both(&mut small, &[white], smooth_light());
     assert!(apart(&standard, &smooth) <= 1);
     small.world().entity_mut(white).insert(ToonScene::default());
@@ -171,11 +151,12 @@ fn an_environment_is_smooth_or_two_tones_with_its_mean() {
     let half = 0.5 * (SKY[2] - SKY[3]);
     let (light, shade) = (mean + half, mean - half);
     let near = |tone: Vec3| {
+        let is_near = |x, y| {
+            let light = Vec3::from_array(linear(&flat, x, y).map(|c| c as f32));
+            light.abs_diff_eq(tone.min(Vec3::ONE), 0.01)
+        };
         flat.enumerate_pixels()
-            .filter(|(x, y, _)| {
-                let light = linear(&flat, *x, *y).map(|c| c as f32);
-                Vec3::from_array(light).abs_diff_eq(tone.min(Vec3::ONE), 0.01)
-            })
+            .filter(|(x, y, _)| is_near(*x, *y))
             .count()
     };
     let background = flat.get_pixel(0, 0);
@@ -203,12 +184,7 @@ fn probes_and_volumes_light_as_on_the_standard_material() {
 
     small.world().despawn(probe);
     small.world().despawn(first);
-    let size = Extent3d {
-        width: 1,
-        height: 2,
-        depth_or_array_layers: 3,
-    };
-    let voxels = layers(&mut small, size, TextureDimension::D3, &SKY);
+    let voxels = image(&mut small, [1, 2, 3], &SKY);
     small.world().spawn((
         Object,
         LightProbe::default(),
@@ -219,10 +195,54 @@ fn probes_and_volumes_light_as_on_the_standard_material() {
         },
         whole,
     ));
-    let second = ball(&mut small);
-    let (standard, toon) = both(&mut small, &[second], smooth_light());
-    assert!(middle(&toon).x > 0.1, "{:?}", middle(&toon));
-    assert!(apart(&standard, &toon) <= 1);
+    // Of a volume and an environment of the camera, the volume counts.
+    let white = environment(&mut small, [Vec3::ONE; 6]);
+    for white in [None, Some(white)] {
+        if let Some(white) = white {
+            small.insert(white);
+        }
+        let second = ball(&mut small);
+        let (standard, toon) = both(&mut small, &[second], smooth_light());
+        assert!((0.1..0.6).contains(&middle(&toon).x), "{:?}", middle(&toon));
+        assert!(apart(&standard, &toon) <= 1);
+        small.world().despawn(second);
+    }
+}
+
+/// The air takes as much of the sun as on the standard material, on a wall that faces the sun.
+#[test]
+fn the_atmosphere_dims_the_sun_as_on_the_standard_material() {
+    let mut small = dark();
+    let to = Vec3::new(1.0, 0.15, 0.3).normalize();
+    let at = Transform::from_translation(to * 4.0).looking_at(Vec3::ZERO, Vec3::Y);
+    small.insert((at, Hdr));
+    let wall = Plane3d::new(to, Vec2::splat(9.0)).mesh().build();
+    let wall = small.put(wall, plain(Color::WHITE), Transform::IDENTITY);
+    let sun = DirectionalLight {
+        illuminance: 0.8 * std::f32::consts::PI / exposure(),
+        ..default()
+    };
+    small.world().spawn((Object, sun, at));
+    let (_, clear) = both(&mut small, &[wall], ToonLight::default());
+    small.world().entity_mut(wall).remove::<ToonScene>();
+    let medium = ScatteringMedium::default();
+    let medium = small
+        .world()
+        .resource_mut::<Assets<ScatteringMedium>>()
+        .add(medium);
+    small.world().spawn((Object, Atmosphere::earth(medium)));
+    small.insert(AtmosphereSettings {
+        sky_view_lut_size: UVec2::splat(16),
+        aerial_view_lut_size: UVec3::splat(4),
+        ..default()
+    });
+    let (standard, hazy) = both(&mut small, &[wall], ToonLight::default());
+    let [clear, hazy_light] = [&clear, &hazy].map(middle);
+    assert!(
+        hazy_light.z < 0.8 * clear.z && hazy_light.x > 0.1,
+        "{clear}, {hazy_light}"
+    );
+    assert!(apart(&standard, &hazy) <= 1);
 }
 
 fn quad(size: f32) -> Mesh {
@@ -252,15 +272,11 @@ fn normal_map(small: &mut Small) -> Handle<Image> {
     let size = Extent3d {
         width: 2,
         height: 2,
-        depth_or_array_layers: 1,
+        ..default()
     };
-    let image = Image::new(
-        size,
-        TextureDimension::D2,
-        data.concat(),
-        TextureFormat::Rgba8Unorm,
-        RenderAssetUsages::RENDER_WORLD,
-    );
+    let (dimension, format) = (TextureDimension::D2, TextureFormat::Rgba8Unorm);
+    let usage = RenderAssetUsages::RENDER_WORLD;
+    let image = Image::new(size, dimension, data.concat(), format, usage);
     small.world().resource_mut::<Assets<Image>>().add(image)
 }
 
@@ -271,74 +287,38 @@ fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
     let map = normal_map(&mut small);
     let color = Color::srgba(0.8, 0.7, 0.6, 0.5);
     let glow = LinearRgba::rgb(0.2, 0.1, 0.3);
-    let cases: [(&str, Mesh, StandardMaterial); 9] = [
-        ("vertex colours", with_colors(quad(3.0)), plain(color)),
+    let blended = |alpha_mode| StandardMaterial {
+        alpha_mode,
+        ..plain(color)
+    };
+    let glowing = |base| StandardMaterial {
+        emissive: glow,
+        ..base
+    };
+    let bumpy = StandardMaterial {
+        normal_map_texture: Some(map),
+        ..plain(color)
+    };
+    let two_sided = StandardMaterial {
+        double_sided: true,
+        cull_mode: None,
+        ..plain(color)
+    };
+    let [quad, colored] = [quad(3.0), with_colors(quad(3.0))];
+    let cases = [
+        ("vertex colours", &colored, plain(color)),
+        ("normal map", &quad, bumpy),
+        ("alpha mask", &colored, blended(AlphaMode::Mask(0.25))),
+        ("blend", &quad, blended(AlphaMode::Blend)),
+        ("premultiplied", &quad, blended(AlphaMode::Premultiplied)),
+        ("add", &quad, blended(AlphaMode::Add)),
+        ("opaque emission", &quad, glowing(plain(color))),
         (
-            "normal map",
-            quad(3.0),
-            StandardMaterial {
-                normal_map_texture: Some(map),
-                ..plain(color)
-            },
+            "transparent emission",
+            &quad,
+            glowing(blended(AlphaMode::Blend)),
         ),
-        (
-            "alpha mask",
-            with_colors(quad(3.0)),
-            StandardMaterial {
-                alpha_mode: AlphaMode::Mask(0.25),
-                ..plain(color)
-            },
-        ),
-        (
-            "blend",
-            quad(3.0),
-            StandardMaterial {
-                alpha_mode: AlphaMode::Blend,
-                ..plain(color)
-            },
-        ),
-        (
-            "premultiplied",
-            quad(3.0),
-            StandardMaterial {
-                alpha_mode: AlphaMode::Premultiplied,
-                ..plain(color)
-            },
-        ),
-        (
-            "add",
-            quad(3.0),
-            StandardMaterial {
-                alpha_mode: AlphaMode::Add,
-                ..plain(color)
-            },
-        ),
-        (
-            "emission of an opaque material",
-            quad(3.0),
-            StandardMaterial {
-                emissive: glow,
-                ..plain(color)
-            },
-        ),
-        (
-            "emission of a transparent one",
-            quad(3.0),
-            StandardMaterial {
-                emissive: glow,
-                alpha_mode: AlphaMode::Blend,
-                ..plain(color)
-            },
-        ),
-        (
-            "double-sided",
-            quad(3.0),
-            StandardMaterial {
-                double_sided: true,
-                cull_mode: None,
-                ..plain(color)
-            },
-        ),
+        ("double-sided", &quad, two_sided),
     ];
     for fog in [false, true] {
         if fog {
@@ -361,7 +341,7 @@ fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
             if *name == "double-sided" {
                 at.rotate_y(2.6);
             }
-            let object = small.put(mesh.clone(), material.clone(), at);
+            let object = small.put((*mesh).clone(), material.clone(), at);
             let (standard, toon) = both(&mut small, &[object], smooth_light());
             let far = apart(&standard, &toon);
             assert!(far <= 1, "{name}, fog {fog}: {far} codes");
@@ -377,7 +357,7 @@ fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
 fn materials_are_those_of_the_standard_material() {
     check_materials(|name, fog| match name {
         "normal map" | "alpha mask" => !fog,
-        "emission of a transparent one" => fog,
+        "transparent emission" => fog,
         _ => false,
     });
 }
@@ -393,13 +373,8 @@ fn all_materials_are_those_of_the_standard_material() {
 #[test]
 fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
     let mut small = dark();
-    let one = Extent3d {
-        width: 1,
-        height: 1,
-        depth_or_array_layers: 1,
-    };
     let baked = 0.3 / exposure();
-    let image = layers(&mut small, one, TextureDimension::D2, &[Vec3::splat(0.3)]);
+    let image = image(&mut small, [1, 1, 1], &[Vec3::splat(0.3)]);
     let mut mesh = Sphere::new(1.6).mesh().uv(32, 16);
     let uv = vec![[0.5f32, 0.5]; mesh.count_vertices()];
     mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, uv);
@@ -561,8 +536,15 @@ fn contact_shadows_are_drawn_and_stand_still() {
     });
     small.headless.step(6);
     let with = small.picture();
-    let lit = |p: &RgbaImage| p.pixels().filter(|p| p.0[0] > 150).count();
-    let lost = lit(&without) - lit(&with);
+    let pairs = || without.pixels().zip(with.pixels());
+    let lost = pairs()
+        .filter(|(without, with)| without.0[0] > 150 && with.0[0] <= 150)
+        .count();
+    // It does not fade.
+    let faded = pairs()
+        .filter(|(without, with)| without != with && with.0[0] > 1)
+        .count();
+    assert_eq!(faded, 0);
     // The shadow reaches 0.41 and 0.16 units from two sides of the box: 0.6 square units,
     // at 550 pixels each and seen at a slant of 20 degrees.
     assert!((80..160).contains(&lost), "{lost} pixels in shadow");

@@ -114,10 +114,4 @@ impl Sun<'_> {
         let part = (r.distance - start) / (far - start);
         [0, 1].map(|k| mix(own[k], next[k], part))
     }
-
-    /// The shadow with a hard edge.
-    pub fn sun_shadow(&self, r: &Receiver) -> f64 {
-        let [shadow, change] = self.blended(r);
-        hard_shadow(shadow, change)
-    }
 }
