@@ -6,7 +6,11 @@ use bevy::{
     pbr::DefaultOpaqueRendererMethod,
 };
 
-use crate::{prelude::*, ramp::differ};
+use crate::{
+    hatched_material::{covers, light_from, mean, plain, tone},
+    prelude::*,
+    ramp::{differ, put, room},
+};
 
 pub const SIZE: UVec2 = UVec2::new(240, 160);
 /// The object that casts the shadow: an axis-aligned box on the ground.
@@ -417,4 +421,40 @@ fn a_deferred_camera_draws_the_same_toon() {
         "{apart} pixels differ"
     );
     assert_eq!(stage.small.errors(), 0);
+}
+
+/// Strokes of the page on a material have the tone of its light, and are drawn anew at their rate.
+#[test]
+fn strokes_of_the_page_are_redrawn_at_their_rate() {
+    let strokes = Hatching {
+        anchor: HatchingAnchor::Page,
+        rate: 10.0,
+        breaks: 1.0,
+        wobble: 1.0,
+        pressure: 0.5,
+        ..plain()
+    };
+    let light = ToonLight {
+        hatching: Some(strokes),
+        ..default()
+    };
+    let mut small = room(UVec2::splat(160), 0.0);
+    light_from(&mut small, Transform::IDENTITY, Vec3::Z, 0.3);
+    light_from(&mut small, Transform::IDENTITY, -Vec3::Z, 0.6);
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
+    put(&mut small, wall, &light, Transform::IDENTITY);
+    let (got, want) = (mean(&covers(&mut small)), tone(&strokes, 1.0 / 3.0));
+    assert!((got - want).abs() < 0.04, "{got}, {want}");
+    let pictures: Vec<image::RgbaImage> = (0..13)
+        .map(|_| {
+            small.headless.step(1);
+            small.picture()
+        })
+        .collect();
+    // Six frames last a tenth of a second.
+    let changes = pictures
+        .windows(2)
+        .filter(|pair| pair[0] != pair[1])
+        .count();
+    assert_eq!(changes, 2);
 }

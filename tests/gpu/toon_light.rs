@@ -8,6 +8,7 @@ use bevy::{
     pbr::{AtmosphereSettings, ContactShadows, DistanceFog, FogFalloff, Lightmap},
     render::render_resource::{TextureViewDescriptor, TextureViewDimension},
 };
+use bevy_comics_testkit::reference::rect::rect_light;
 use image::RgbaImage;
 
 use crate::{prelude::*, ramp::apart};
@@ -168,22 +169,9 @@ fn an_environment_is_smooth_or_two_tones_with_its_mean() {
 }
 
 #[test]
-fn probes_and_volumes_light_as_on_the_standard_material() {
+fn volumes_light_as_on_the_standard_material() {
     let mut small = dark();
-    let probe = environment(&mut small, SKY);
     let whole = Transform::from_scale(Vec3::splat(20.0));
-    let probe = small
-        .world()
-        .spawn((Object, LightProbe::default(), probe, whole))
-        .id();
-    let first = ball(&mut small);
-    let (standard, toon) = both(&mut small, &[first], smooth_light());
-    // The engine needs arrays of textures for reflection probes. CPU adapters have none, so
-    // that both pictures are black there.
-    assert!(apart(&standard, &toon) <= 1);
-
-    small.world().despawn(probe);
-    small.world().despawn(first);
     let voxels = image(&mut small, [1, 2, 3], &SKY);
     small.world().spawn((
         Object,
@@ -386,51 +374,64 @@ fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
         },
         Transform::from_xyz(0.0, 0.4, 0.0),
     );
-    let mut entity = small.world().entity_mut(object);
-    entity.insert((
-        Lightmap {
-            image,
-            uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0),
-            bicubic_sampling: false,
-        },
-        ToonScene::default(),
-    ));
-    let camera = Transform::from_xyz(1.5, 2.4, 6.0);
-    let sun = move |affects: bool| {
-        (
-            Object,
-            DirectionalLight {
-                illuminance: 0.2 * std::f32::consts::PI / exposure(),
-                affects_lightmapped_mesh_diffuse: affects,
-                ..default()
-            },
-            camera.looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
-        )
+    let lightmap = Lightmap {
+        image,
+        uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0),
+        bicubic_sampling: false,
     };
-    let ambient = |affects: bool| GlobalAmbientLight {
-        brightness: 0.1 / exposure(),
-        affects_lightmapped_meshes: affects,
+    let matte = ToonScene::new(ToonLight {
+        falloff: 0.0,
         ..default()
-    };
-    for (sun_affects, ambient_affects, expected) in [
+    });
+    small.world().entity_mut(object).insert((lightmap, matte));
+    let (eye, center) = (Vec3::new(1.5, 2.4, 6.0), Vec3::new(0.0, 0.4, 0.0));
+    let at = Transform::from_translation(eye).looking_at(center, Vec3::Y);
+    let illuminance = 0.2 * std::f32::consts::PI / exposure();
+    let distance = eye.distance(center) - 1.6;
+    for (light_affects, ambient_affects, expected) in [
         (false, false, 0.3),
         (true, false, 0.5),
         (false, true, 0.4),
         (true, true, 0.6),
     ] {
-        let light = small.world().spawn(sun(sun_affects)).id();
-        small.world().insert_resource(ambient(ambient_affects));
-        small.headless.step(6);
-        let found = middle(&small.picture()).x;
-        let what = format!("sun {sun_affects}, ambient {ambient_affects}");
-        assert!(
-            (found - expected).abs() < 0.01,
-            "{what}: {found}, not {expected}"
-        );
-        small.world().despawn(light);
+        small.world().insert_resource(GlobalAmbientLight {
+            brightness: 0.1 / exposure(),
+            affects_lightmapped_meshes: ambient_affects,
+            ..default()
+        });
+        let sun = DirectionalLight {
+            illuminance,
+            affects_lightmapped_mesh_diffuse: light_affects,
+            ..default()
+        };
+        let lamp = PointLight {
+            intensity: illuminance * 4.0 * std::f32::consts::PI * distance * distance,
+            affects_lightmapped_mesh_diffuse: light_affects,
+            ..default()
+        };
+        let world = small.world();
+        let lights = [
+            world.spawn((Object, sun, at)).id(),
+            world.spawn((Object, lamp, at, Visibility::Hidden)).id(),
+        ];
+        for [shown, hidden] in [lights, [lights[1], lights[0]]] {
+            let world = small.world();
+            world.entity_mut(shown).insert(Visibility::Visible);
+            world.entity_mut(hidden).insert(Visibility::Hidden);
+            small.headless.step(6);
+            let found = middle(&small.picture()).x;
+            let what = format!("light {light_affects}, ambient {ambient_affects}");
+            assert!(
+                (found - expected).abs() < 0.01,
+                "{what}: {found}, not {expected}"
+            );
+        }
+        for light in lights {
+            small.world().despawn(light);
+        }
     }
     // It replaces the light of the surroundings, too.
-    small.world().insert_resource(ambient(false));
+    small.world().insert_resource(GlobalAmbientLight::NONE);
     let sky = environment(&mut small, SKY);
     small.insert(sky);
     small.headless.step(6);
@@ -459,21 +460,10 @@ fn a_rect_light_lights_what_it_shines_at() {
     small
         .insert(Transform::from_xyz(0.0, 1.2, 3.0).looking_at(Vec3::new(0.02, 0.0, 0.02), Vec3::Y));
     // Light at the ground from all points of the rectangle, of luminance 1.
-    let steps = 200;
-    let sum: f64 = (0..steps * steps)
-        .map(|i| {
-            let part = |i: i32, size: f32| {
-                (f64::from(i) + 0.5) / f64::from(steps) * f64::from(size) - 0.5 * f64::from(size)
-            };
-            let (x, y, h) = (
-                part(i % steps, width),
-                part(i / steps, height),
-                f64::from(up),
-            );
-            h * h / (x * x + y * y + h * h).powi(2)
-        })
-        .sum();
-    let illuminance = sum * f64::from(width * height) / f64::from(steps * steps);
+    let [half_width, half_height] = [width, height].map(|size| 0.5 * f64::from(size));
+    let [right, up_there] = [[half_width, 0.0, 0.0], [0.0, half_height, 0.0]];
+    let vector = rect_light(right, up_there, [0.0, 0.0, up.into()], 200);
+    let illuminance = std::f64::consts::PI * DVec3::from_array(vector).length();
     let luminance = wanted * std::f64::consts::PI / illuminance / f64::from(exposure());
     let light = RectLight {
         intensity: luminance as f32 * width * height * std::f32::consts::PI,

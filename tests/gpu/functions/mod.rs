@@ -37,7 +37,6 @@ mod memory;
 mod middles;
 mod nested;
 mod normal;
-mod octahedral;
 mod overshoot;
 mod owner_plane;
 mod paint;
