@@ -1,6 +1,6 @@
 //! Lamps: how their light falls off, and their shadows, against rays and the engine's own shadows.
 
-use bevy_comics_testkit::reference::light::flat_falloff;
+use bevy_comics_testkit::reference::light::{edge_at, flat_falloff};
 
 use crate::{
     prelude::*,
@@ -125,7 +125,7 @@ fn lights_beside_on_and_behind_surfaces_are_finite() {
     let world = stage.small.world();
     world.spawn((Object, lamp, Transform::from_translation(point)));
     assert!(is_finite(&mut stage), "a lamp on the ground");
-    let eye = stage.small.world().get::<Transform>(stage.small.camera);
+    let eye = stage.small.camera_mut().get::<Transform>().copied();
     let to_eye = eye.expect("an eye").translation - point;
     let at = Transform::IDENTITY.looking_to(to_eye, Vec3::Y);
     let world = stage.small.world();
@@ -194,14 +194,26 @@ fn light_of_lamps_falls_off_to_its_range() {
             let (_, picture) = stage.small.pass();
             let id = u32::from(object_id(stage.ground));
             let wanted = |x: f32, y: f32| {
-                let offset = ground_point_at(&stage, Vec2::new(x, y) + 0.5)? - at;
-                let cosine = cone.map_or(1.0, |axis| axis.dot(offset.normalize()));
-                let is_lit = cone.is_none() || 2.0 * cosine > CONE[0].cos() + CONE[1].cos();
+                let point = |x: f32, y: f32| ground_point_at(&stage, Vec2::new(x, y) + 0.5);
+                let here = point(x, y)?;
+                let beside = [point(x + 1.0, y)?, point(x, y + 1.0)?];
+                let pixel: f32 = beside.iter().map(|point| here.distance(*point)).sum();
+                let offset = here - at;
                 let squared = f64::from(offset.length_squared());
                 let per_range = f64::from(RANGE).powi(-2);
                 let brightest = intensity * exposure;
-                let part = flat_falloff(&light, squared, per_range, brightest, 1e-6);
-                let lit = f64::from(u8::from(is_lit)) * intensity * part / std::f64::consts::PI;
+                let part = flat_falloff(&light, squared, per_range, brightest, pixel.into());
+                let through = cone.map_or(1.0, |axis| {
+                    let [inner, outer] = CONE.map(|angle| f64::from(angle.cos()));
+                    let inside = f64::from(axis.dot(offset.normalize())) - outer;
+                    let width = inner - outer;
+                    edge_at(
+                        0.5,
+                        inside / width,
+                        f64::from(pixel) / squared.sqrt() / width,
+                    )
+                });
+                let lit = through * intensity * part / std::f64::consts::PI;
                 Some(exposure * (lit + 100.0))
             };
             let mut tones = BTreeSet::new();
@@ -210,7 +222,7 @@ fn light_of_lamps_falls_off_to_its_range() {
                 if ids.pixels[i][0] != id {
                     continue;
                 }
-                // On a border, the pixel lies between the colours of its neighbours.
+                // Where the light changes, the pixel lies between its neighbours.
                 let (u, v) = (x as f32, y as f32);
                 let places = [
                     (u, v),

@@ -1,11 +1,8 @@
 //! The toon material under every kind of light of the engine, beside the standard material.
 
 use bevy::{
-    light::{
-        Atmosphere, EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight,
-        atmosphere::ScatteringMedium,
-    },
-    pbr::{AtmosphereSettings, ContactShadows, DistanceFog, FogFalloff, Lightmap},
+    light::{EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight},
+    pbr::{ContactShadows, DistanceFog, FogFalloff, Lightmap},
     render::render_resource::{TextureViewDescriptor, TextureViewDimension},
 };
 use bevy_comics_testkit::reference::rect::rect_light;
@@ -191,46 +188,14 @@ fn volumes_light_as_on_the_standard_material() {
         }
         let second = ball(&mut small);
         let (standard, toon) = both(&mut small, &[second], smooth_light());
-        assert!((0.1..0.6).contains(&middle(&toon).x), "{:?}", middle(&toon));
+        assert!(
+            (0.1..0.55).contains(&middle(&toon).x),
+            "{:?}",
+            middle(&toon)
+        );
         assert!(apart(&standard, &toon) <= 1);
         small.world().despawn(second);
     }
-}
-
-/// The air takes as much of the sun as on the standard material, on a wall that faces the sun.
-#[test]
-fn the_atmosphere_dims_the_sun_as_on_the_standard_material() {
-    let mut small = dark();
-    let to = Vec3::new(1.0, 0.15, 0.3).normalize();
-    let at = Transform::from_translation(to * 4.0).looking_at(Vec3::ZERO, Vec3::Y);
-    small.insert((at, Hdr));
-    let wall = Plane3d::new(to, Vec2::splat(9.0)).mesh().build();
-    let wall = small.put(wall, plain(Color::WHITE), Transform::IDENTITY);
-    let sun = DirectionalLight {
-        illuminance: 0.8 * std::f32::consts::PI / exposure(),
-        ..default()
-    };
-    small.world().spawn((Object, sun, at));
-    let (_, clear) = both(&mut small, &[wall], ToonLight::default());
-    small.world().entity_mut(wall).remove::<ToonScene>();
-    let medium = ScatteringMedium::default();
-    let medium = small
-        .world()
-        .resource_mut::<Assets<ScatteringMedium>>()
-        .add(medium);
-    small.world().spawn((Object, Atmosphere::earth(medium)));
-    small.insert(AtmosphereSettings {
-        sky_view_lut_size: UVec2::splat(16),
-        aerial_view_lut_size: UVec3::splat(4),
-        ..default()
-    });
-    let (standard, hazy) = both(&mut small, &[wall], ToonLight::default());
-    let [clear, hazy_light] = [&clear, &hazy].map(middle);
-    assert!(
-        hazy_light.z < 0.8 * clear.z && hazy_light.x > 0.1,
-        "{clear}, {hazy_light}"
-    );
-    assert!(apart(&standard, &hazy) <= 1);
 }
 
 fn quad(size: f32) -> Mesh {

@@ -31,7 +31,7 @@ pub fn stylized_highlight_radius(edge: f64, perceptual_roughness: f64) -> f64 {
     lit.tan()
 }
 
-pub fn place_of([right, up]: [DVec3; 2], normal: DVec3, half_vector: DVec3) -> DVec2 {
+fn place_of([right, up]: [DVec3; 2], normal: DVec3, half_vector: DVec3) -> DVec2 {
     let along = half_vector.dot(normal).max(1e-4);
     -DVec2::new(half_vector.dot(right), half_vector.dot(up)) / along
 }

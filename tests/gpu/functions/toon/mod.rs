@@ -1,6 +1,7 @@
 //! Functions of the toon material that read bindings, against references: the shipped functions, with
 //! their uniforms, the view and the lights as variables.
 
+mod atmosphere;
 mod borders;
 mod lamp_shadow;
 mod light_textures;
