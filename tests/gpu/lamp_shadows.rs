@@ -1,7 +1,10 @@
-//! Shadows of lamps: their borders against rays, and the engine's own shadows.
+//! Lamps: how their light falls off, and their shadows, against rays and the engine's own shadows.
+
+use bevy_comics_testkit::reference::light::{edge_at, flat_falloff};
 
 use crate::{
     prelude::*,
+    ramp::set_light,
     toon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage},
 };
 
@@ -91,23 +94,164 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
     }
 }
 
-/// A wall in the plane of a spot light, before it and behind it: every pixel is finite.
+/// Every pixel is finite on a wall in the plane of a spot light, before it and behind it; where a lamp
+/// stands on the ground; and where a sun is right behind the ground, seen from the eye.
 #[test]
-fn walls_beside_a_spot_light_are_finite() {
+fn lights_beside_on_and_behind_surfaces_are_finite() {
     let (from, to) = (Vec3::new(0.0, 0.7, 3.0), Vec3::new(0.0, 0.7, -5.0));
     let mut stage = stage(&Kind::Spot(from, to), Msaa::Off);
+    // Other pictures have no NaN, whatever is written to them.
+    stage.small.insert(Hdr);
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(3.0)).mesh();
     let white = material(&mut stage.small, ToonLight::default());
     let wall = stage.small.put_shared(wall, white, Transform::IDENTITY);
+    let is_finite = |stage: &mut Stage| {
+        stage.small.headless.step(2);
+        let (_, picture) = stage.small.pass();
+        assert_eq!(stage.small.errors(), 0);
+        picture.pixels.iter().flatten().all(|x| x.is_finite())
+    };
     for at in [0.0f32, 0.5, -0.5] {
         let place = Transform::from_xyz(0.0, 0.7, 3.0 + at);
         stage.small.world().entity_mut(wall).insert(place);
-        stage.small.headless.step(2);
-        let (_, picture) = stage.small.pass();
-        assert!(
-            picture.pixels.iter().flatten().all(|x| x.is_finite()),
-            "{at}"
-        );
+        assert!(is_finite(&mut stage), "{at}");
+    }
+    stage.small.world().despawn(wall);
+    let point = ground_point_at(&stage, Vec2::new(40.5, 120.5)).expect("the ground");
+    let lamp = PointLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    let world = stage.small.world();
+    world.spawn((Object, lamp, Transform::from_translation(point)));
+    assert!(is_finite(&mut stage), "a lamp on the ground");
+    let eye = stage.small.camera_mut().get::<Transform>().copied();
+    let to_eye = eye.expect("an eye").translation - point;
+    let at = Transform::IDENTITY.looking_to(to_eye, Vec3::Y);
+    let world = stage.small.world();
+    world.spawn((Object, DirectionalLight::default(), at));
+    assert!(is_finite(&mut stage), "a sun behind the ground");
+}
+
+/// Changes the intensity and the shadow maps of every light.
+fn change_lights(stage: &mut Stage, change: impl Fn(&mut f32, &mut bool)) {
+    let world = stage.small.world();
+    for mut sun in world.query::<&mut DirectionalLight>().iter_mut(world) {
+        let sun = &mut *sun;
+        change(&mut sun.illuminance, &mut sun.shadow_maps_enabled);
+    }
+    for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
+        let lamp = &mut *lamp;
+        change(&mut lamp.intensity, &mut lamp.shadow_maps_enabled);
+    }
+    for mut lamp in world.query::<&mut SpotLight>().iter_mut(world) {
+        let lamp = &mut *lamp;
+        change(&mut lamp.intensity, &mut lamp.shadow_maps_enabled);
+    }
+}
+
+/// Truth: light falls off with the square of the distance and ends at its range, smoothly or in rings; the
+/// cone of a spot light ends in the middle between its two angles. A ramp over the fraction of all light
+/// keeps the rings.
+#[test]
+fn light_of_lamps_falls_off_to_its_range() {
+    const INTENSITY: f32 = 120_000.0;
+    const RANGE: f32 = 4.5;
+    const CONE: [f32; 2] = [0.5, 0.6];
+    let white = Ramp {
+        keep_intensity: 1.0,
+        ..Ramp::new([RampStop::new(0.0, Color::WHITE)])
+    };
+    let exposure = f64::from(Exposure::default().exposure());
+    let intensity = f64::from(INTENSITY) / (4.0 * std::f64::consts::PI);
+    let mut stage = stage(&lights()[1].1, Msaa::Off);
+    for (name, light) in lights().into_iter().skip(1) {
+        stage = stage.again(&light, Msaa::Off);
+        change_lights(&mut stage, |intensity, has_maps| {
+            (*intensity, *has_maps) = (INTENSITY, false);
+        });
+        let world = stage.small.world();
+        for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
+            lamp.range = RANGE;
+        }
+        for mut lamp in world.query::<&mut SpotLight>().iter_mut(world) {
+            lamp.range = RANGE;
+            [lamp.inner_angle, lamp.outer_angle] = CONE;
+        }
+        let (at, cone) = match light {
+            Kind::Spot(at, to) => (at, Some((to - at).normalize())),
+            Kind::Lamp(at) | Kind::Sun(at) => (at, None),
+        };
+        for (falloff, ramp) in [(0.0, None), (1.0, None), (1.0, Some(&white))] {
+            let light = ToonLight {
+                falloff,
+                ramp: ramp.cloned(),
+                ..default()
+            };
+            set_light(&mut stage.small, &light);
+            stage.small.headless.step(3);
+            let ids = stage.small.object_ids().expect("ids are drawn");
+            let (_, picture) = stage.small.pass();
+            let id = u32::from(object_id(stage.ground));
+            let wanted = |x: f32, y: f32| {
+                let point = |x: f32, y: f32| ground_point_at(&stage, Vec2::new(x, y) + 0.5);
+                let here = point(x, y)?;
+                let beside = [point(x + 1.0, y)?, point(x, y + 1.0)?];
+                let pixel: f32 = beside.iter().map(|point| here.distance(*point)).sum();
+                let offset = here - at;
+                let squared = f64::from(offset.length_squared());
+                let per_range = f64::from(RANGE).powi(-2);
+                let brightest = intensity * exposure;
+                let part = flat_falloff(&light, squared, per_range, brightest, pixel.into());
+                let through = cone.map_or(1.0, |axis| {
+                    let [inner, outer] = CONE.map(|angle| f64::from(angle.cos()));
+                    let inside = f64::from(axis.dot(offset.normalize())) - outer;
+                    let width = inner - outer;
+                    edge_at(
+                        0.5,
+                        inside / width,
+                        f64::from(pixel) / squared.sqrt() / width,
+                    )
+                });
+                let lit = through * intensity * part / std::f64::consts::PI;
+                Some(exposure * (lit + 100.0))
+            };
+            let mut tones = BTreeSet::new();
+            for (x, y) in (1..SIZE.y - 1).flat_map(|y| (1..SIZE.x - 1).map(move |x| (x, y))) {
+                let i = (y * SIZE.x + x) as usize;
+                if ids.pixels[i][0] != id {
+                    continue;
+                }
+                // Where the light changes, the pixel lies between its neighbours.
+                let (u, v) = (x as f32, y as f32);
+                let places = [
+                    (u, v),
+                    (u - 1.0, v),
+                    (u + 1.0, v),
+                    (u, v - 1.0),
+                    (u, v + 1.0),
+                ];
+                let around: Option<Vec<f64>> = places.iter().map(|(x, y)| wanted(*x, *y)).collect();
+                let Some(around) = around else {
+                    continue;
+                };
+                let [low, high] =
+                    [f64::min, f64::max].map(|of| around.iter().copied().reduce(of).expect("five"));
+                let found = f64::from(picture.pixels[i][1]);
+                // A code is up to 0.004 of linear light here.
+                assert!(
+                    (low - 0.005..high + 0.005).contains(&found),
+                    "{name}, {falloff}, {ramp:?}, ({x}, {y}): {found}, not {low} to {high}"
+                );
+                tones.insert(picture.pixels[i][1].to_bits());
+            }
+            let is_ringed = falloff > 0.0;
+            assert!(
+                tones.len() > 3 && (is_ringed || tones.len() > 30),
+                "{}",
+                tones.len()
+            );
+        }
         assert_eq!(stage.small.errors(), 0);
     }
 }
@@ -134,20 +278,11 @@ fn be_standard(stage: &mut Stage) {
 /// What is left of the light of each pixel because of shadow maps: 0 to 1. `None`: the lamp does not
 /// reach it, shadows or not.
 fn left_of_light(stage: &mut Stage) -> Vec<Option<f32>> {
-    let mut light = |intensity: f32, has_shadows: bool| {
-        let world = stage.small.world();
-        for mut sun in world.query::<&mut DirectionalLight>().iter_mut(world) {
-            sun.shadow_maps_enabled = has_shadows;
-            sun.illuminance *= intensity;
-        }
-        for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
-            lamp.shadow_maps_enabled = has_shadows;
-            lamp.intensity *= intensity;
-        }
-        for mut lamp in world.query::<&mut SpotLight>().iter_mut(world) {
-            lamp.shadow_maps_enabled = has_shadows;
-            lamp.intensity *= intensity;
-        }
+    let mut light = |factor: f32, has_shadows: bool| {
+        change_lights(stage, |intensity, has_maps| {
+            *intensity *= factor;
+            *has_maps = has_shadows;
+        });
         stage.small.headless.step(3);
         let (_, picture) = stage.small.pass();
         let green = picture.pixels.iter().map(|pixel| pixel[1]);

@@ -1,14 +1,10 @@
 //! Surfaces that are shaded as simpler forms.
 
-use bevy_comics_testkit::reference::toon::{
-    per_light,
-    surface::{Footprint, Surface},
-    two_shades::Evenly,
-};
+use bevy_comics_testkit::reference::toon::reflected::{Lights, Surface, reflected};
 
 use crate::{
     prelude::*,
-    ramp::{apart, bright, drawn, put, room, set_light, sun, with},
+    ramp::{apart, bright, differ, drawn, put, room, set_light, sun, with},
     ramp_pixels::arriving,
 };
 
@@ -25,12 +21,6 @@ fn tones(form: Option<ShadingProxy>) -> ToonLight {
             ..Ramp::new(stops)
         })
     }
-}
-
-/// Pixels that differ by more than 8 codes.
-fn differ(a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
-    let pairs = a.pixels().zip(b.pixels());
-    pairs.filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > 8).count()
 }
 
 /// A ball is its own ellipsoid, also if it is stretched and turned; a limb its own cylinder.
@@ -67,7 +57,7 @@ fn simple_meshes_are_their_own_forms() {
         };
         set_light(&mut small, &tones(form(1.0)));
         // Normals of the mesh are interpolated between vertices, the form's are not.
-        let found = differ(&own, &drawn(&mut small));
+        let found = differ(&own, &drawn(&mut small), 8);
         assert!(found < 40, "{shape:?}: {found} pixels");
         set_light(&mut small, &tones(form(0.0)));
         assert!(apart(&own, &drawn(&mut small)) == 0, "{shape:?}");
@@ -120,21 +110,15 @@ fn ball_on_cube(x: u32, y: u32, beside: [f64; 2]) -> Option<Surface> {
     let normal = |x, y| (rotation * on_face(from(x, y))).normalize();
     let here = normal(x, y);
     let [right, down] = beside;
-    let steps = [
-        right * (normal(x + right, y) - here),
-        down * (normal(x, y + down) - here),
-    ];
     Some(Surface {
+        base: DVec3::ONE,
         normal: here,
+        steps: [
+            right * (normal(x + right, y) - here),
+            down * (normal(x, y + down) - here),
+        ],
         to_eye: DVec3::Z,
-        foot: Footprint {
-            normal: steps,
-            position: [DVec3::X / 80.0, DVec3::NEG_Y / 80.0],
-            ..Footprint::default()
-        },
         detail: 1.0,
-        roughness: 1.0,
-        ..Surface::default()
     })
 }
 
@@ -154,11 +138,9 @@ fn a_cube_as_a_ball_has_its_tones() {
     let to = Vec3::new(1.0, 0.5, 0.3);
     sun(&mut small, to, bright(1.0));
     let picture = drawn(&mut small);
-    let suns = [arriving((to, 1.0))];
-    let evenly = Evenly {
-        base: DVec3::ONE,
+    let lights = Lights {
+        suns: vec![arriving((to, 1.0))],
         around: DVec3::ZERO,
-        shine: DVec3::ZERO,
         exposure: f64::from(Exposure::default().exposure()),
     };
     let mut seen = 0;
@@ -167,7 +149,7 @@ fn a_cube_as_a_ball_has_its_tones() {
         let sides = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
         let tones = sides.map(|side| {
             let s = ball_on_cube(x, y, side)?;
-            Some(per_light::reflected(&light, &s, &suns, &evenly).x)
+            Some(reflected(&light, &s, &lights).x)
         });
         let [Some(a), Some(b), Some(c), Some(d)] = tones else {
             continue;

@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{apart, bright, drawn, put, room, set_light, sun, with},
+    ramp::{apart, bright, differ, drawn, put, room, set_light, sun, with},
 };
 
 const SIZE: UVec2 = UVec2::new(128, 128);
@@ -51,22 +51,23 @@ fn turned() -> Transform {
     ))
 }
 
-fn mesh_of(small: &mut Small, entity: Entity) -> Mesh {
-    let world = small.world();
-    let handle = world.get::<Mesh3d>(entity).expect("a mesh").0.clone();
-    world
-        .resource::<Assets<Mesh>>()
-        .get(&handle)
-        .expect("loaded")
-        .clone()
+/// The picture of a mesh alone that is turned, shaded with its own normals.
+fn alone(small: &mut Small, mesh: Mesh, more: impl Bundle) -> RgbaImage {
+    let entity = put(small, mesh, &light(None), turned());
+    small.world().entity_mut(entity).insert(more);
+    let picture = drawn(small);
+    small.world().despawn(entity);
+    picture
 }
 
 /// The codes of a mesh, once they are there and `is_new`.
 fn codes(small: &mut Small, entity: Entity, is_new: impl Fn(&[[i16; 2]]) -> bool) -> Vec<[i16; 2]> {
     for _ in 0..300 {
         small.headless.step(1);
-        let mesh = mesh_of(small, entity);
-        let mut all = mesh.attributes();
+        let world = small.world();
+        let mesh = world.get::<Mesh3d>(entity).expect("a mesh");
+        let mesh = world.resource::<Assets<Mesh>>().get(&mesh.0);
+        let mut all = mesh.expect("loaded").attributes();
         let found = all.find(|(attribute, _)| attribute.name == "ComicsSmoothedNormal");
         if let Some((_, VertexAttributeValues::Snorm16x2(codes))) = found
             && is_new(codes)
@@ -90,13 +91,6 @@ fn with_normals(mut mesh: Mesh, codes: &[[i16; 2]]) -> Mesh {
     mesh
 }
 
-/// Pixels that differ by more than this many codes.
-fn differ(a: &RgbaImage, b: &RgbaImage, codes: u8) -> usize {
-    let pairs = a.pixels().zip(b.pixels());
-    let apart = pairs.filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > codes);
-    apart.count()
-}
-
 /// The picture of smoothed normals is that of a mesh that has them as its own: here on entities that
 /// are turned and stretched, beside prepasses, and of some of the amount.
 #[test]
@@ -105,9 +99,7 @@ fn smoothed_normals_are_normals() {
     small.insert(DepthPrepass);
     for rounds in [0, 2] {
         let mesh = || Cuboid::new(0.9, 1.1, 0.8).mesh().build();
-        let own = put(&mut small, mesh(), &light(None), turned());
-        let plain = drawn(&mut small);
-        small.world().despawn(own);
+        let plain = alone(&mut small, mesh(), ());
         let object = put(&mut small, mesh(), &light(Some(rounds)), turned());
         let codes = made(&mut small, object);
         let found = drawn(&mut small);
@@ -118,17 +110,10 @@ fn smoothed_normals_are_normals() {
         set_light(&mut small, &none);
         assert_eq!(apart(&plain, &drawn(&mut small)), 0);
         small.world().despawn(object);
-        let same = put(
-            &mut small,
-            with_normals(mesh(), &codes),
-            &light(None),
-            turned(),
-        );
-        let wanted = drawn(&mut small);
+        let wanted = alone(&mut small, with_normals(mesh(), &codes), ());
         assert!(differ(&found, &plain, 2) > 500);
         let wrong = differ(&found, &wanted, 2);
         assert!(wrong <= 4, "{rounds} rounds: {wrong} pixels");
-        small.world().despawn(same);
     }
 }
 
@@ -153,17 +138,14 @@ fn smoothed_normals_follow_bones() {
     let object = put(&mut small, skinned, &light(Some(1)), Transform::IDENTITY);
     let world = small.world();
     let poses = SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]);
-    let inverse_bindposes = world
-        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
-        .add(poses);
+    let mut all = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
+    let inverse_bindposes = all.add(poses);
     let joints = vec![world.spawn(turned()).id()];
-    world.entity_mut(object).insert((
-        SkinnedMesh {
-            inverse_bindposes,
-            joints,
-        },
-        NoFrustumCulling,
-    ));
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints,
+    };
+    world.entity_mut(object).insert((skin, NoFrustumCulling));
     made(&mut small, object);
     let wrong = differ(&drawn(&mut small), &wanted, 2);
     assert!(wrong <= 4, "{wrong} pixels");
@@ -192,17 +174,13 @@ fn smoothed_normals_follow_morph_targets() {
             NoFrustumCulling,
         )
     };
-    let own = put(&mut small, morphed.clone(), &light(None), turned());
-    small.world().entity_mut(own).insert(weights());
-    let wanted = drawn(&mut small);
-    small.world().despawn(own);
+    let wanted = alone(&mut small, morphed.clone(), weights());
     let object = put(&mut small, morphed, &light(Some(0)), turned());
     small.world().entity_mut(object).insert(weights());
     made(&mut small, object);
     let found = drawn(&mut small);
     small.world().despawn(object);
-    put(&mut small, ball(), &light(None), turned());
-    let still = drawn(&mut small);
+    let still = alone(&mut small, ball(), ());
     assert!(differ(&wanted, &still, 2) > 500);
     // Angle weights of the icosphere differ from its radii by up to 1e-3: edges move by less than a
     // tenth of a pixel, which is 20 codes.
@@ -246,14 +224,13 @@ fn meshes_that_cannot_be_smoothed_stay_as_they_are() {
         mesh.remove_attribute(Mesh::ATTRIBUTE_NORMAL);
         mesh
     };
+    let mut small = studio();
     for mesh in [&gone as &dyn Fn() -> Mesh, &bare] {
-        let mut small = studio();
-        let own = put(&mut small, mesh(), &light(None), turned());
-        let wanted = drawn(&mut small);
-        small.world().despawn(own);
-        put(&mut small, mesh(), &light(Some(3)), turned());
+        let wanted = alone(&mut small, mesh(), ());
+        let smoothed = put(&mut small, mesh(), &light(Some(3)), turned());
         small.headless.step(20);
         assert_eq!(apart(&wanted, &drawn(&mut small)), 0);
+        small.world().despawn(smoothed);
     }
 }
 
@@ -262,14 +239,14 @@ fn meshes_that_cannot_be_smoothed_stay_as_they_are() {
 #[test]
 fn normals_are_made_anew_when_something_changes() {
     let mut small = studio();
-    let alone = |rounds| {
+    let codes_of = |rounds| {
         let light = light(Some(rounds));
         let object = put(&mut small, block_of_squares(), &light, turned());
         let codes = made(&mut small, object);
         small.world().despawn(object);
         codes
     };
-    let [one, two, six] = [1, 2, 6].map(alone);
+    let [one, two, six] = [1, 2, 6].map(codes_of);
     let first = put(&mut small, block_of_squares(), &light(Some(2)), turned());
     let shared = small.world().get::<Mesh3d>(first).expect("a mesh").clone();
     let second = put(&mut small, block(), &light(Some(6)), turned());
@@ -291,11 +268,8 @@ fn normals_are_made_anew_when_something_changes() {
 }
 
 fn block_of_squares() -> Mesh {
-    let mut mesh = Plane3d::default()
-        .mesh()
-        .size(1.0, 1.0)
-        .subdivisions(3)
-        .build();
+    let square = Plane3d::default().mesh().size(1.0, 1.0);
+    let mut mesh = square.subdivisions(3).build();
     mesh.merge(&block()).expect("equal attributes");
     mesh
 }

@@ -4,7 +4,7 @@ use bevy::math::Affine2;
 
 use crate::{
     prelude::*,
-    ramp::{bright, put, room, sun, with},
+    ramp::{MODES, bright, put, room, sun, with},
 };
 
 const SIZE: UVec2 = UVec2::new(160, 16);
@@ -44,11 +44,6 @@ fn step() -> Vec<f32> {
 fn lights() -> Vec<(ToonLight, f64)> {
     let plain = ToonLight::default();
     let begins = f64::from(plain.shadow_threshold);
-    let modes = [
-        RampMode::LightFraction,
-        RampMode::PerLight,
-        RampMode::Brightest,
-    ];
     let ramp = |mode| Ramp {
         mode,
         blend: RampBlend::Absolute,
@@ -58,23 +53,22 @@ fn lights() -> Vec<(ToonLight, f64)> {
             RampStop::new(0.25, Color::WHITE),
         ])
     };
-    let ramps = modes.map(|mode| (with(ramp(mode)), 0.25));
+    let ramps = MODES.map(|mode| (with(ramp(mode)), 0.25));
     [(plain, begins)].into_iter().chain(ramps).collect()
 }
 
 /// A wall of 40 units, of which the view shows 20, with coordinates from 0 to 1 over its middle half, and
-/// with this alpha of its vertices.
-fn wall(alpha: f32) -> Mesh {
+/// with the alpha of its vertices by where they are.
+fn wall(alpha: impl Fn(f32) -> f32) -> Mesh {
     let mut wall = Plane3d::new(Vec3::Z, Vec2::splat(20.0)).mesh().build();
     let places = wall.attribute(Mesh::ATTRIBUTE_POSITION).expect("places");
     let places = places.as_float3().expect("numbers").to_vec();
     let uv = |[x, ..]: &[f32; 3]| [0.5 + x / 20.0, 0.5];
     let uvs: Vec<[f32; 2]> = places.iter().map(uv).collect();
+    let color = |[x, ..]: &[f32; 3]| [1.0, 1.0, 1.0, alpha(*x)];
+    let colors: Vec<[f32; 4]> = places.iter().map(color).collect();
     wall.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
-    wall.insert_attribute(
-        Mesh::ATTRIBUTE_COLOR,
-        vec![[1.0f32, 1.0, 1.0, alpha]; places.len()],
-    );
+    wall.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     wall
 }
 
@@ -148,7 +142,7 @@ fn edges_of_ramps_lie_where_a_gradient_crosses_the_threshold() {
 }
 
 fn assert_edges_of_a_gradient(lights: &[(ToonLight, f64)]) {
-    let (mut small, entity) = lit_wall(wall(0.625));
+    let (mut small, entity) = lit_wall(wall(|_| 0.625));
     let map = thresholds(&mut small, &gradient());
     let plain = Affine2::IDENTITY;
     let turned =
@@ -175,6 +169,19 @@ fn assert_edges_of_a_gradient(lights: &[(ToonLight, f64)]) {
         let edge = crossing(*begins, 2.0 * 0.625 - 1.0);
         check_edge(&mut small, entity, 160.0 * edge, &format!("{what}, both"));
     }
+    // Vertices alone, whose alpha is the same gradient.
+    small.world().despawn(entity);
+    let gradient = wall(|x| 0.5 + x / 20.0);
+    let entity = put(&mut small, gradient, &lights[0].0, default());
+    for (light, begins) in lights {
+        let light = ToonLight {
+            vertex_threshold: true,
+            ..light.clone()
+        };
+        set(&mut small, &light, plain);
+        let edge = 160.0 * crossing(*begins, 0.0);
+        check_edge(&mut small, entity, edge, "vertices alone");
+    }
 }
 
 /// The step is a texel wide, from middle to middle, as the sampler mixes both sides.
@@ -190,7 +197,7 @@ fn edges_of_ramps_lie_in_the_texel_of_a_step() {
 }
 
 fn assert_edges_of_a_step(lights: &[(ToonLight, f64)]) {
-    let (mut small, entity) = lit_wall(wall(1.0));
+    let (mut small, entity) = lit_wall(wall(|_| 1.0));
     let map = thresholds(&mut small, &step());
     for (light, begins) in lights {
         let light = ToonLight {
@@ -207,7 +214,7 @@ fn assert_edges_of_a_step(lights: &[(ToonLight, f64)]) {
 /// Meshes without texture coordinates are lit as without a map.
 #[test]
 fn without_coordinates_there_is_no_threshold() {
-    let mut mesh = wall(1.0);
+    let mut mesh = wall(|_| 1.0);
     mesh.remove_attribute(Mesh::ATTRIBUTE_UV_0);
     let (mut small, _) = lit_wall(mesh);
     let map = thresholds(&mut small, &[0.0]);

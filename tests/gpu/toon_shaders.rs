@@ -111,42 +111,18 @@ const LISTS: &[&[Choice]] = &[
     ],
     &[
         &[],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_VIEW",
-            "STYLIZED_HIGHLIGHT_SHAPE=0",
-        ],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_LIGHT",
-            "STYLIZED_HIGHLIGHT_SHAPE=1",
-        ],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_TANGENT",
-            "STYLIZED_HIGHLIGHT_SHAPE=2",
-        ],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_WORLD",
-            "STYLIZED_HIGHLIGHT_SHAPE=3",
-        ],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_VIEW",
-            "STYLIZED_HIGHLIGHT_SHAPE=4",
-        ],
-        &[
-            "KEY_LIGHT",
-            "STYLIZED_HIGHLIGHT",
-            "STYLIZED_HIGHLIGHT_LIGHT",
-            "STYLIZED_HIGHLIGHT_SHAPE=5",
-        ],
+        &["STYLIZED_HIGHLIGHT", "STYLIZED_HIGHLIGHT_VIEW"],
+        &["STYLIZED_HIGHLIGHT", "STYLIZED_HIGHLIGHT_LIGHT"],
+        &["STYLIZED_HIGHLIGHT", "STYLIZED_HIGHLIGHT_TANGENT"],
+        &["STYLIZED_HIGHLIGHT", "STYLIZED_HIGHLIGHT_WORLD"],
+    ],
+    &[
+        &["STYLIZED_HIGHLIGHT_SHAPE=0"],
+        &["STYLIZED_HIGHLIGHT_SHAPE=1"],
+        &["STYLIZED_HIGHLIGHT_SHAPE=2"],
+        &["STYLIZED_HIGHLIGHT_SHAPE=3"],
+        &["STYLIZED_HIGHLIGHT_SHAPE=4"],
+        &["STYLIZED_HIGHLIGHT_SHAPE=5"],
     ],
     &[
         &[],
@@ -218,6 +194,9 @@ fn names(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "ENVIRONMENT_MAP" | "IRRADIANCE_VOLUME" | "ENVIRONMENT" => !in_lightmap,
         _ => true,
     });
+    if names.contains(&"STYLIZED_HIGHLIGHT") && !names.contains(&"KEY_LIGHT") {
+        names.push("KEY_LIGHT");
+    }
     // Strokes of a map lie at rest on meshes without coordinates.
     if names.contains(&"HATCH_ART_MAP") && !uvs && !names.contains(&"HATCH_REST") {
         names.push("HATCH_REST");

@@ -2,7 +2,6 @@
 //! that it mirrors. It is written from the definition, not from the shader.
 
 pub mod abstraction;
-pub mod art_map;
 pub mod bend;
 pub mod black_flats;
 pub mod blue_noise;
@@ -47,8 +46,6 @@ pub mod paint;
 pub mod paper;
 pub mod planes;
 pub mod pressure;
-pub mod proxy;
-pub mod ramp;
 pub mod ramp_map;
 pub mod range;
 pub mod raw;
@@ -56,7 +53,6 @@ pub mod read;
 pub mod rect;
 pub mod remember;
 pub mod resolve;
-pub mod ribbon;
 mod rim;
 pub mod screen;
 pub mod shadow_texels;
@@ -67,7 +63,6 @@ pub mod smoothing;
 pub mod speed_lines;
 pub mod stipple;
 mod straight;
-pub mod stroke_level;
 pub mod stylized_highlight;
 pub mod surface;
 pub mod tone_bands;

@@ -32,16 +32,6 @@ pub fn filtered(texel: impl Fn(i64, i64) -> f64, at: DVec2) -> f64 {
     sum / 144.0
 }
 
-/// Its change per texel: the difference of two places that are close together.
-pub fn slope(texel: impl Fn(i64, i64) -> f64, at: DVec2) -> DVec2 {
-    let step = 1e-4;
-    let along = |axis: DVec2| {
-        let [low, high] = [-0.5, 0.5].map(|k| filtered(&texel, at + k * step * axis));
-        (high - low) / step
-    };
-    DVec2::new(along(DVec2::X), along(DVec2::Y))
-}
-
 /// The eight samples of cube maps: the places that Direct3D 11 has for eight samples per pixel, in
 /// parts of half the pattern's width, and the engine's weights.
 pub const SAMPLES: [(DVec2, f64); 8] = [

@@ -2,8 +2,15 @@
 
 use bevy::math::{DMat4, DVec2, DVec3};
 
-use super::super::{mix, shadow_texels::filtered};
-use super::lights::hard_shadow;
+use super::super::{light::edge_at, mix, shadow_texels::filtered};
+
+/// Hard border of a shadow, from the filtered shadow at a pixel and its change over the pixel.
+pub fn hard_shadow(here: f64, change: f64) -> f64 {
+    match here > 0.0 && here < 1.0 {
+        true => edge_at(0.5, here, change),
+        false => here,
+    }
+}
 
 /// The depths in a square shadow map, row by row; 1 is nearest to the light.
 pub struct ShadowMap {
@@ -106,11 +113,5 @@ impl Sun<'_> {
         let next = self.shadow_in_cascade(index + 1, r);
         let part = (r.distance - start) / (far - start);
         [0, 1].map(|k| mix(own[k], next[k], part))
-    }
-
-    /// The shadow with a hard edge.
-    pub fn sun_shadow(&self, r: &Receiver) -> f64 {
-        let [shadow, change] = self.blended(r);
-        hard_shadow(shadow, change)
     }
 }
