@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use bevy::math::{DMat4, DQuat, DVec2, DVec3, DVec4, Vec4Swizzles};
+use bevy::math::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 use bevy_comics::{
     Hatching,
     effect::linear_rgb,
@@ -10,7 +10,7 @@ use bevy_comics::{
 };
 
 use super::{
-    Rgb, color,
+    Rgb,
     edge::line_coverage,
     mix,
     nested::{level_of, mark_of, noise_along, stroke_factor, stroke_start},
