@@ -135,7 +135,7 @@ pub fn windmill() -> Shape {
         sail.cuboid([-0.12, 0.0, -0.08], [0.12, 8.5, 0.08], 0x5a4030);
         sail.cuboid([0.12, 1.6, -0.05], [1.5, 8.3, 0.05], 0xe8d9b5);
         let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * k as f32 + 0.5);
-        s.add(&sail, Transform::from_translation(hub).witirotation(turn));
+        s.add(&sail, Transform::from_translation(hub).with_rotation(turn));
     }
     s
 }
@@ -209,7 +209,7 @@ pub fn cart() -> Shape {
         wheel.frustum(Vec3::Y * 0.1, 0.05, (0.12, 0.12), 8, 0x32363c);
         let turn = Quat::from_rotation_z(-side * std::f32::consts::FRAC_PI_2);
         let at = Transform::from_xyz(side * 0.9, 0.55, 0.1);
-        s.add(&wheel, at.witirotation(turn));
+        s.add(&wheel, at.with_rotation(turn));
     }
     for (x, z, r, hex) in [
         (-0.3, -0.6, 0.34, 0xe07f28),

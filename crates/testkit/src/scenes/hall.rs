@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use bevy::prelude::*;
 
 use super::{
-    ScenePart, Stage, Vantage, lamplight,
+    Stage, Vantage, lamplight,
     noise::Random,
     shadows_within,
     shape::{Shape, rgb, shade},

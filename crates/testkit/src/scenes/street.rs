@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use bevy::prelude::*;
 
 use super::{
-    ScenePart, Stage, Vantage, lamplight,
+    Stage, Vantage, lamplight,
     noise::{Random, noise2},
     shadow_cascades,
     shape::{Shape, rgb, shade},
@@ -353,7 +353,6 @@ fn ground(parts: &mut Parts) {
 
 fn end_of_the_street(parts: &mut Parts) {
     let Parts { lit, shining, .. } = parts;
-    let v = Vec3::new;
     let stone = rgb(0x5a5f6e);
     lit.cuboid([-16.0, 0.0, -78.0], [16.0, 17.0, -66.0], stone);
     lit.cuboid([-3.2, 0.0, -68.0], [3.2, 29.0, -62.0], shade(stone, 1.2));

@@ -12,10 +12,7 @@ use bevy::{light::NotShadowCaster, prelude::*};
 use bevy_comics::{OutlineGroup, toon::MaterialName};
 
 use super::{
-    ScenePart, Stage, ToonPart, Vantage, shadows_within,
-    shape::{Shape, rgb},
-    sky::Sky,
-    sunlight,
+    ScenePart, Stage, ToonPart, Vantage, shadows_within, shape::Shape, sky::Sky, sunlight,
 };
 use motion::{Lids, Sway};
 
