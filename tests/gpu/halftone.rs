@@ -327,26 +327,6 @@ pub fn view_part(small: &mut Small, [x, y, width, height]: [u32; 4]) {
     });
 }
 
-/// A period in logical pixels, at any scale factor, is that many physical pixels times the
-/// factor.
-#[test]
-fn periods_are_logical() {
-    let mut small = Small::new(size(), Msaa::Off);
-    let mut printed = |scale_factor: f32, cell_size: f32| {
-        small.headless.resize(size(), scale_factor);
-        small.restart(Msaa::Off);
-        let s = Halftone {
-            cell_size,
-            ..default()
-        };
-        shot(&mut small, &ComicStyle::new().with(s))
-    };
-    assert_eq!(printed(1.0, 12.0), printed(3.0, 4.0));
-    let ten = printed(1.0, 10.0);
-    assert_eq!(ten, printed(1.25, 8.0));
-    assert_ne!(ten, printed(1.0, 8.0));
-}
-
 /// The largest difference of two pictures, in codes.
 pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
     let pairs = a.as_raw().iter().zip(b.as_raw());

@@ -105,15 +105,7 @@ pub struct Changes {
 
 impl Default for Changes {
     fn default() -> Self {
-        Self {
-            sizes: true,
-            looks: presets::STYLES.len(),
-            cameras: true,
-            materials: true,
-            objects: true,
-            files: true,
-            plain: false,
-        }
+        Self::of("")
     }
 }
 

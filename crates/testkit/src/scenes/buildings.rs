@@ -35,18 +35,18 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
     let (ex, ez, thick) = (x + 0.4, z + 0.45, 0.2);
     let drop = h.roof / x * 0.4;
     for side in [1.0f32, -1.0] {
-        // Corners in front and behind: of the eave and of the ridge, below and above.
         let eave = |z: f32, up: f32| Vec3::new(side * ex, y - drop + up, z);
         let top = |z: f32, up: f32| Vec3::new(0.0, ridge + up, z);
+        // Corners in front and behind: of the eave, below and above; of the ridge, below and above.
         let corners = |z: f32| [eave(z, 0.0), eave(z, thick), top(z, 0.0), top(z, thick)];
-        let ([a, b, c, d], [e, f, g, i]) = (corners(ez), corners(-ez));
+        let (f, b) = (corners(ez), corners(-ez));
         let beam = rgb(0x6d4c33);
         for (mut quad, color) in [
-            ([b, f, i, d], h.tiles),
-            ([c, g, e, a], shade(h.tiles, 0.5)),
-            ([a, e, f, b], shade(h.tiles, 0.8)),
-            ([a, b, d, c], beam),
-            ([g, i, f, e], beam),
+            ([f[1], b[1], b[3], f[3]], h.tiles),
+            ([f[2], b[2], b[0], f[0]], shade(h.tiles, 0.5)),
+            ([f[0], b[0], b[1], f[1]], shade(h.tiles, 0.8)),
+            ([f[0], f[1], f[3], f[2]], beam),
+            ([b[2], b[3], b[1], b[0]], beam),
         ] {
             if side < 0.0 {
                 quad.reverse();

@@ -235,27 +235,15 @@ fn room(shop: &mut Workshop) {
         let z = |k: i32| -3.0 + if k % 2 == 0 { 0.0 } else { 0.85 };
         let (z0, z1) = (z(i), z(i + 1));
         let tone = [color, shade(color, 0.93)][i as usize % 2];
-        let left = |y: f32, back: f32| Vec3::new(x, y, z0 - back);
-        let right = |y: f32, back: f32| Vec3::new(x + 1.7, y, z1 - back);
+        let [left, right] = [(x, z0), (x + 1.7, z1)].map(|(x, z)| {
+            // From the foot in front over the top to the foot behind.
+            [(0.0, 0.0), (4.6, 0.0), (4.6, 0.15), (0.0, 0.15)]
+                .map(|(y, back)| Vec3::new(x, y, z - back))
+        });
         for panel in [
-            [
-                left(0.0, 0.0),
-                right(0.0, 0.0),
-                right(4.6, 0.0),
-                left(4.6, 0.0),
-            ],
-            [
-                left(4.6, 0.0),
-                right(4.6, 0.0),
-                right(4.6, 0.15),
-                left(4.6, 0.15),
-            ],
-            [
-                right(0.0, 0.15),
-                left(0.0, 0.15),
-                left(4.6, 0.15),
-                right(4.6, 0.15),
-            ],
+            [left[0], right[0], right[1], left[1]],
+            [left[1], right[1], right[2], left[2]],
+            [right[3], left[3], left[2], right[2]],
         ] {
             wall.polygon(&panel, tone);
         }
