@@ -11,16 +11,16 @@ use bevy_comics_testkit::{
         moire_of_inks, tone_error,
     },
 };
+use image::RgbaImage;
 
 use crate::{pictures::assert_pass_matches_the_reference, prelude::*};
 
-fn ideal_spot(shape: ScreenShape, period: f32) -> Halftone {
-    Halftone {
-        mode: HalftoneMode::Spot,
-        shape,
-        cell_size: period,
-        ..ideal()
-    }
+const SAMPLINGS: [ScreenSampling; 2] = [ScreenSampling::Pixel, ScreenSampling::Cell];
+
+/// The picture in a style.
+pub fn shot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
+    small.style(style);
+    small.settle().picture()
 }
 
 /// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone. Fewer are rendered, by
@@ -55,10 +55,8 @@ fn ideal_inks_print_every_colour() {
     for s in [0.0, 0.5, 1.0].map(with_black) {
         for light in colors() {
             let separated = inked(&s, plate_tones(&s, light));
-            for c in 0..3 {
-                let apart = (separated[c] - light[c]).abs();
-                assert!(apart < 1e-9, "{light:?}: {separated:?}");
-            }
+            let apart = [0, 1, 2].map(|c| (separated[c] - light[c]).abs());
+            assert!(apart.iter().all(|c| *c < 1e-9), "{light:?}: {separated:?}");
         }
     }
 }
@@ -69,34 +67,29 @@ fn ideal_inks_print_every_colour() {
 /// independent.
 #[test]
 fn flat_colours_have_their_light_and_need_the_phase_of_black() {
-    let real = grey_inks(with_black(0.5));
-    let off = color_error(&real, Plate::all(&real, 1.0));
-    assert!(off < 0.01, "{off}");
-    assert_needs_phase(color_error(&real, in_phase(&real)));
+    assert_colours_have_their_light(&[0.5], &[grey_inks]);
 }
 
 /// The same at three fractions of black, and with ideal inks, of which the mean light is the colour.
 #[test]
 #[ignore = "long: three fractions of black, in double precision"]
 fn flat_colours_have_their_light_at_every_fraction_of_black() {
-    let mut without = 0.0;
-    for s in [0.0, 0.5, 1.0].map(with_black) {
-        for s in [s, grey_inks(s)] {
-            let off = color_error(&s, Plate::all(&s, 1.0));
-            assert!(off < 0.01, "black {}: {off}", s.black_generation);
-        }
-        let real = grey_inks(s);
-        without = f64::max(without, color_error(&real, in_phase(&real)));
-    }
-    assert_needs_phase(without);
+    assert_colours_have_their_light(&[0.0, 0.5, 1.0], &[grey_inks, |ideal| ideal]);
 }
 
-fn assert_needs_phase(without: f64) {
+fn assert_colours_have_their_light(blacks: &[f32], inks: &[fn(Halftone) -> Halftone]) {
+    let mut without = 0.0;
+    for black in blacks {
+        for inked in inks {
+            let s = inked(with_black(*black));
+            let off = color_error(&s, Plate::all(&s, 1.0));
+            assert!(off < 0.01, "black {black}: {off}");
+        }
+        let real = grey_inks(with_black(*black));
+        without = f64::max(without, color_error(&real, in_phase(&real)));
+    }
     println!("without the phase of black: {without}");
-    assert!(
-        without > 0.01,
-        "{without}: the phase of black is not needed"
-    );
+    assert!(without > 0.01, "{without}: the phase is not needed");
 }
 
 /// No pixel changes by more than 0.1 when the tone changes by 1 / 1024.
@@ -141,10 +134,8 @@ fn assert_no_moire(screens: &[(f64, f64)]) {
         for &(period, degrees) in screens {
             for zones in [false, true] {
                 let moire = moire(shape, period, degrees, zones);
-                assert!(
-                    moire < 0.01,
-                    "{shape:?}, {period} px, {degrees} degrees, zones {zones}: {moire}"
-                );
+                let what = format!("{shape:?}, {period} px, {degrees} degrees, zones {zones}");
+                assert!(moire < 0.01, "{what}: {moire}");
             }
         }
     }
@@ -156,25 +147,14 @@ fn four_screens_do_not_beat() {
     for black_generation in [0.0, 0.5, 1.0] {
         let s = Halftone {
             black_generation,
-            ..Halftone::default()
+            ..default()
         };
         for zones in [false, true] {
             let moire = moire_of_inks(&s, zones);
             println!("black {black_generation}, zones {zones}: {moire}");
-            assert!(
-                moire < 0.01,
-                "black {black_generation}, zones {zones}: {moire}"
-            );
+            assert!(moire < 0.01, "{black_generation}, {zones}: {moire}");
         }
     }
-}
-
-/// A camera that sees one colour alone.
-pub fn flat(options: HeadlessOptions, light: [f32; 3]) -> Small {
-    let mut small = Small::with(options, Msaa::Off);
-    small.clear();
-    fill(&mut small, Color::linear_rgb(light[0], light[1], light[2]));
-    small
 }
 
 pub fn fill(small: &mut Small, color: Color) {
@@ -183,36 +163,52 @@ pub fn fill(small: &mut Small, color: Color) {
     camera.clear_color = color.into();
 }
 
-/// The mean light of a picture in a style.
-fn mean_light(small: &mut Small, style: &ComicStyle) -> [f64; 3] {
-    small.style(style);
-    small.settle();
-    let picture = small.picture();
-    let (width, height) = picture.dimensions();
-    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    [0, 1, 2].map(|c| mean(pixels.clone().map(|(x, y)| linear(&picture, x, y)[c])))
+/// A camera that sees a colour alone.
+fn flat() -> Small {
+    let mut small = Small::new(UVec2::new(144, 144), Msaa::Off);
+    small.clear();
+    small
 }
 
-/// Size of flat pictures.
-const FLAT: UVec2 = UVec2::new(144, 144);
+/// The mean light of a colour in linear light, without a style, and printed.
+fn mean_lights(small: &mut Small, [r, g, b]: [f32; 3], s: Halftone) -> [[f64; 3]; 2] {
+    fill(small, Color::linear_rgb(r, g, b));
+    [ComicStyle::new(), ComicStyle::new().with(s)].map(|style| {
+        let picture = shot(small, &style);
+        let (width, height) = picture.dimensions();
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        [0, 1, 2].map(|c| mean(pixels.clone().map(|(x, y)| linear(&picture, x, y)[c])))
+    })
+}
+
+fn assert_light_stays(small: &mut Small, light: [f32; 3], s: Halftone) {
+    let [want, found] = mean_lights(small, light, s);
+    assert!(small.ran(ComicsStage::of::<Halftone>()));
+    let apart = [0, 1, 2].map(|c| (found[c] - want[c]).abs());
+    let what = format!("{:?}, {:?}, {} px", s.mode, s.shape, s.cell_size);
+    assert!(
+        apart.iter().all(|c| *c < 0.01),
+        "{what}: {found:?}, {want:?}"
+    );
+}
+
+fn ideal_spot(shape: ScreenShape, cell_size: f32) -> Halftone {
+    Halftone {
+        mode: HalftoneMode::Spot,
+        shape,
+        cell_size,
+        ..ideal()
+    }
+}
 
 /// Rendered: every shape, in one ink. A code of the display is up to 0.009 in light, but the
 /// rounding of many different coverages cancels.
 #[test]
 fn rendered_flats_have_their_tone() {
-    let mut small = flat(options(FLAT), [0.5; 3]);
+    let mut small = flat();
     for (period, tone) in [(4.0, 0.3), (6.0, 0.85), (12.0, 0.6)] {
-        let light = 1.0 - tone;
-        fill(&mut small, Color::linear_rgb(light, light, light));
-        let want = mean_light(&mut small, &ComicStyle::new())[0];
         for shape in SHAPES {
-            let style = ComicStyle::new().with(ideal_spot(shape, period));
-            let found = mean_light(&mut small, &style)[0];
-            assert!(small.ran(ComicsStage::of::<Halftone>()));
-            assert!(
-                (found - want).abs() < 0.01,
-                "{shape:?}, {period} px, {tone}: {found}, {want}"
-            );
+            assert_light_stays(&mut small, [1.0 - tone; 3], ideal_spot(shape, period));
         }
     }
     assert_eq!(small.errors(), 0);
@@ -220,24 +216,16 @@ fn rendered_flats_have_their_tone() {
 
 #[test]
 fn rendered_colours_have_their_light() {
-    let mut small = flat(options(FLAT), [0.5; 3]);
-    for light in [
+    let mut small = flat();
+    let lights = [
         [0.8, 0.3, 0.1],
         [0.1, 0.4, 0.7],
         [0.25, 0.25, 0.25],
         [0.6, 0.6, 0.05],
-    ] {
-        fill(&mut small, Color::linear_rgb(light[0], light[1], light[2]));
-        let want = mean_light(&mut small, &ComicStyle::new());
+    ];
+    for light in lights {
         for mode in [HalftoneMode::Cmyk, HalftoneMode::Rgb] {
-            let style = ComicStyle::new().with(Halftone { mode, ..ideal() });
-            let found = mean_light(&mut small, &style);
-            for c in 0..3 {
-                assert!(
-                    (found[c] - want[c]).abs() < 0.01,
-                    "{mode:?}, {light:?}: {found:?}, {want:?}"
-                );
-            }
+            assert_light_stays(&mut small, light, Halftone { mode, ..ideal() });
         }
     }
 }
@@ -245,15 +233,14 @@ fn rendered_colours_have_their_light() {
 /// Two inks have the luminance of the picture, if the second is black.
 #[test]
 fn a_duotone_has_the_luminance() {
-    let mut small = flat(options(FLAT), [0.5; 3]);
+    let mut small = flat();
+    let s = Halftone {
+        mode: HalftoneMode::Duotone,
+        cyan: Color::srgb(0.95, 0.45, 0.2),
+        ..ideal()
+    };
     for tone in [0.1, 0.3, 0.5, 0.8] {
-        fill(&mut small, Color::linear_rgb(tone, tone, tone));
-        let s = Halftone {
-            mode: HalftoneMode::Duotone,
-            cyan: Color::srgb(0.95, 0.45, 0.2),
-            ..ideal()
-        };
-        let light = mean_light(&mut small, &ComicStyle::new().with(s));
+        let [_, light] = mean_lights(&mut small, [tone; 3], s);
         let found = color::luminance(light);
         assert!((found - f64::from(tone)).abs() < 0.012, "{tone}: {found}");
     }
@@ -268,7 +255,8 @@ fn screened(s: Halftone) -> ComicStyle {
     with_map(style, map)
 }
 
-/// The whole pass, pixel by pixel, in every mode; in two passes where cells are read.
+/// The whole pass, pixel by pixel, in every mode; in two passes where cells are read. Also with surface
+/// lines, tone bands and several samples.
 #[test]
 fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
@@ -278,7 +266,7 @@ fn every_pixel_matches_the_reference() {
         (HalftoneMode::Duotone, ScreenShape::Line),
         (HalftoneMode::Rgb, ScreenShape::Cross),
     ] {
-        for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
+        for sampling in SAMPLINGS {
             let s = Halftone {
                 mode,
                 shape,
@@ -286,12 +274,24 @@ fn every_pixel_matches_the_reference() {
                 at_near: 1.0,
                 at_far: 0.3,
                 gain: 0.1,
+                shadows: 0.05,
+                highlights: 0.9,
                 shadows_only_below: 0.7,
                 ..default()
             };
             let what = format!("{mode:?}, {shape:?}, {sampling:?}");
             assert_pass_matches_the_reference(&mut small, &screened(s), None, &what);
         }
+    }
+    let sampling = ScreenSampling::Cell;
+    let s = Halftone {
+        sampling,
+        ..default()
+    };
+    let style = screened(s).with(ToneBands::default());
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        small.restart(msaa);
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{msaa:?}"));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -301,17 +301,9 @@ fn every_pixel_matches_the_reference() {
 fn viewports_are_pages_or_parts_of_one() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     let viewport = [11, 5, 29, 20];
-    small.insert(Camera {
-        clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
-        viewport: Some(Viewport {
-            physical_position: UVec2::new(viewport[0], viewport[1]),
-            physical_size: UVec2::new(viewport[2], viewport[3]),
-            ..default()
-        }),
-        ..default()
-    });
+    view_part(&mut small, viewport);
     for anchor in [ScreenAnchor::View, ScreenAnchor::Window] {
-        for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
+        for sampling in SAMPLINGS {
             let s = Halftone {
                 anchor,
                 sampling,
@@ -324,26 +316,21 @@ fn viewports_are_pages_or_parts_of_one() {
     }
 }
 
-/// A period in logical pixels, at any scale factor, is that many physical pixels times the
-/// factor.
-#[test]
-fn periods_are_logical() {
-    let size = UVec2::new(96, 64);
-    let mut small = Small::new(size, Msaa::Off);
-    let mut shot = |scale_factor: f32, period: f32| {
-        small.headless.resize(size, scale_factor);
-        small.restart(Msaa::Off);
-        small.style(&ComicStyle::new().with(Halftone {
-            cell_size: period,
-            ..default()
-        }));
-        small.settle();
-        small.picture()
-    };
-    assert_eq!(shot(1.0, 12.0), shot(3.0, 4.0));
-    let ten = shot(1.0, 10.0);
-    assert_eq!(ten, shot(1.25, 8.0));
-    assert_ne!(ten, shot(1.0, 8.0));
+/// Draws to a part of the target: x, y, width, height.
+pub fn view_part(small: &mut Small, [x, y, width, height]: [u32; 4]) {
+    let entity = small.camera;
+    let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
+    camera.viewport = Some(Viewport {
+        physical_position: UVec2::new(x, y),
+        physical_size: UVec2::new(width, height),
+        ..default()
+    });
+}
+
+/// The largest difference of two pictures, in codes.
+pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
+    let pairs = a.as_raw().iter().zip(b.as_raw());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
 /// Too fine for the screen: plain tones, the picture itself with ideal inks. Settings out of
@@ -355,71 +342,66 @@ fn impossible_periods_show_a_picture() {
         ..options(UVec2::new(48, 32))
     };
     let mut small = Small::with(options, Msaa::Off);
-    small.settle();
-    let plain = small.picture();
-    let apart = |a: &image::RgbaImage, b: &image::RgbaImage| {
-        let pairs = a.as_raw().iter().zip(b.as_raw());
-        pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
-    };
-    for period in [0.0, f32::NAN, f32::INFINITY, 3e38] {
-        for shape in [
-            ScreenShape::Euclidean,
-            ScreenShape::Line,
-            ScreenShape::Stochastic,
-        ] {
+    let plain = small.settle().picture();
+    let [dots, lines, grains] = [
+        ScreenShape::Euclidean,
+        ScreenShape::Line,
+        ScreenShape::Stochastic,
+    ];
+    for cell_size in [0.0, f32::NAN, f32::INFINITY, 3e38] {
+        for shape in [dots, lines, grains] {
             let s = Halftone {
-                cell_size: period,
+                cell_size,
                 shape,
                 ..ideal()
             };
-            small.style(&ComicStyle::new().with(s));
-            small.settle();
+            let picture = shot(&mut small, &ComicStyle::new().with(s));
             // 2.5 and 6 logical pixels, and 40: 4 physical ones.
-            if period != 3e38 && shape != ScreenShape::Stochastic {
-                assert!(apart(&small.picture(), &plain) <= 1, "{period}, {shape:?}");
+            if cell_size != 3e38 && shape != grains {
+                assert!(apart(&picture, &plain) <= 1, "{cell_size}, {shape:?}");
             } else {
-                assert_ne!(small.picture(), plain, "{period}, {shape:?}");
+                assert_ne!(picture, plain, "{cell_size}, {shape:?}");
             }
         }
     }
     assert_eq!(small.errors(), 0);
 }
 
+/// The pictures before and after the pass keep their opacity, and nothing is printed where nothing is.
+/// `least`: pixels of background.
+pub fn assert_background_stays(small: &Small, least: usize) {
+    let (before, after) = small.pass();
+    let mut empty = 0;
+    for (before, after) in before.pixels.iter().zip(&after.pixels) {
+        assert_eq!(before[3], after[3], "opacity stays");
+        if before[3] == 0.0 {
+            assert_eq!(*after, [0.0; 4]);
+            empty += 1;
+        }
+    }
+    assert!(empty > least, "{empty} pixels of background");
+}
+
 /// Nothing is printed where nothing is, and floating-point targets hold finite light.
 #[test]
 fn backgrounds_stay_transparent_and_light_stays_finite() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
-        fill(&mut small, Color::NONE);
-        let s = Halftone {
-            sampling,
-            ..default()
-        };
-        small.style(&ComicStyle::new().with(s));
+    let mut small = Small::new(size(), Msaa::Off);
+    let print = |small: &mut Small, s: Halftone, sampling| {
+        small.style(&ComicStyle::new().with(Halftone { sampling, ..s }));
         small.settle();
-        let (before, after) = small.pass();
-        let mut empty = 0;
-        for (before, after) in before.pixels.iter().zip(&after.pixels) {
-            assert_eq!(before[3], after[3], "opacity stays");
-            if before[3] == 0.0 {
-                assert_eq!(after[..3], [0.0; 3]);
-                empty += 1;
-            }
-        }
-        assert!(empty > 100, "{empty} pixels of background");
+    };
+    fill(&mut small, Color::NONE);
+    for sampling in SAMPLINGS {
+        print(&mut small, default(), sampling);
+        assert_background_stays(&small, 100);
     }
     small.insert(Hdr);
     fill(&mut small, Color::linear_rgb(40.0, 9.0, 0.5));
-    for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
-        let s = Halftone {
-            sampling,
-            ..ideal()
-        };
-        small.style(&ComicStyle::new().with(s));
-        small.settle();
+    for sampling in SAMPLINGS {
+        print(&mut small, ideal(), sampling);
         let (_, after) = small.pass();
-        let ok = after.pixels.iter().flatten();
-        assert!(ok.copied().all(|v| (0.0..=1.001).contains(&v)));
+        let mut values = after.pixels.iter().flatten();
+        assert!(values.all(|v| (0.0..=1.001).contains(v)));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -427,7 +409,7 @@ fn backgrounds_stay_transparent_and_light_stays_finite() {
 /// The pixels that a style covers with ink of its outlines entirely: they are black with
 /// black lines, and white with white ones.
 pub fn covered(small: &mut Small, style: &ComicStyle) -> Vec<bool> {
-    let mut shot = |color: Color| {
+    let [black, white] = [Color::BLACK, Color::WHITE].map(|color| {
         let outlines = Outlines {
             width: 3.0,
             silhouettes: Some(Silhouettes { color, ..default() }),
@@ -435,44 +417,45 @@ pub fn covered(small: &mut Small, style: &ComicStyle) -> Vec<bool> {
             objects: None,
             ..default()
         };
-        small.style(&style.clone().with(outlines));
-        small.settle();
-        small.picture()
-    };
-    let (black, white) = (shot(Color::BLACK), shot(Color::WHITE));
+        shot(small, &style.clone().with(outlines))
+    });
     let pairs = black.pixels().zip(white.pixels());
     pairs
         .map(|(black, white)| black.0[..3] == [0; 3] && white.0[..3] == [255; 3])
         .collect()
 }
 
-/// Lines are drawn over the print: they cover the pixels that they cover without one.
-#[test]
-fn lines_stay_sharp() {
-    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+/// Lines are drawn over the effect: they cover the pixels that they cover without it.
+pub fn assert_lines_stay(size: UVec2, effect: impl Effect) {
+    let mut small = Small::new(size, Msaa::Off);
     let bare = covered(&mut small, &ComicStyle::new());
-    let printed = covered(&mut small, &ComicStyle::new().with(Halftone::default()));
+    let printed = covered(&mut small, &ComicStyle::new().with(effect));
     assert!(bare.iter().filter(|covered| **covered).count() > 100);
     assert_eq!(bare, printed);
+}
+
+#[test]
+fn lines_stay_sharp() {
+    assert_lines_stay(UVec2::new(72, 48), Halftone::default());
 }
 
 /// FXAA, SMAA and sharpening would change dots and grain: printed views are styled after them.
 /// Lines without a print are still smoothed.
 #[test]
 fn dots_and_grain_are_drawn_after_anti_aliasing() {
-    let sharp = || ContrastAdaptiveSharpening {
-        enabled: true,
-        ..default()
-    };
     let filter = |small: &mut Small, which: usize| {
+        let sharp = ContrastAdaptiveSharpening {
+            enabled: true,
+            ..default()
+        };
         let mut camera = small.camera_mut();
         match which {
             0 => camera.insert(Fxaa::default()),
             1 => camera.insert(Smaa::default()),
-            _ => camera.insert(sharp()),
+            _ => camera.insert(sharp),
         };
     };
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(size(), Msaa::Off);
     let mut picture = |style: &ComicStyle, filters: &[usize]| {
         small.restart(Msaa::Off);
         small.clear();
@@ -480,10 +463,9 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
         for which in filters {
             filter(&mut small, *which);
         }
-        small.style(style);
-        small.settle();
+        let picture = shot(&mut small, style);
         assert_eq!(small.errors(), 0);
-        small.picture()
+        picture
     };
     let dots = ComicStyle::new().with(ideal_spot(ScreenShape::Round, 6.0));
     let grain = ComicStyle::new().with(Paper {
@@ -501,29 +483,11 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
     }
     // Each of them does something here.
     small.restart(Msaa::Off);
-    small.style(&ComicStyle::new().with(Outlines::default()));
-    let mut before = small.settle().picture();
+    let mut before = shot(&mut small, &ComicStyle::new().with(Outlines::default()));
     for which in 0..3 {
         filter(&mut small, which);
         let after = small.settle().picture();
         assert_ne!(after, before, "filter {which}");
         before = after;
-    }
-}
-
-/// Effects of all stages at once, with surface lines, MSAA, and an object's own colours.
-#[test]
-fn all_stages_work_together() {
-    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        small.restart(msaa);
-        let style = screened(Halftone {
-            sampling: ScreenSampling::Cell,
-            tints: 0,
-            ..default()
-        })
-        .with(ToneBands::default());
-        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{msaa:?}"));
-        assert_eq!(small.errors(), 0);
     }
 }

@@ -1,12 +1,16 @@
-//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of the mesh at rest.
+//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of the mesh
+//! at rest.
 
-use bevy::{light::DirectionalLightShadowMap, mesh::morph::MorphAttributes};
+use bevy::{
+    camera::visibility::NoFrustumCulling, light::DirectionalLightShadowMap,
+    mesh::morph::MorphAttributes,
+};
 use bevy_comics_testkit::reference::hatching::Hatch;
-use image::RgbaImage;
 
 use crate::{
+    hatching::{EXTREMES, differ, extreme, mean},
     prelude::*,
-    ramp::{apart, bright, drawn, full, put, room, set_light, sun},
+    ramp::{MODES, apart, bright, drawn, full, put, room, set_light, sun},
 };
 
 pub const SIZE: UVec2 = UVec2::new(160, 160);
@@ -21,17 +25,10 @@ fn inked() -> Hatching {
 
 /// The same without what is random, with a tone for every lightness.
 pub fn plain() -> Hatching {
-    Hatching {
-        breaks: 0.0,
-        wobble: 0.0,
-        pressure: 0.0,
-        shadows: 0.0,
-        highlights: 1.0,
-        ..inked()
-    }
+    crate::hatching::plain(HatchingMarks::Strokes)
 }
 
-fn with(hatching: Hatching) -> ToonLight {
+pub fn with(hatching: Hatching) -> ToonLight {
     ToonLight {
         hatching: Some(hatching),
         ..default()
@@ -47,41 +44,29 @@ pub fn covers(small: &mut Small) -> Vec<f64> {
         .collect()
 }
 
-pub fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
+/// A wall of 18 units that faces the eye.
+pub fn wall() -> Mesh {
+    Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build()
 }
 
-/// Pixels that differ by more than two codes of a display of linear light.
-pub fn differ(a: &[f64], b: &[f64]) -> usize {
-    let pairs = a.iter().zip(b);
-    pairs.filter(|(a, b)| (*a - *b).abs() > 2.0 / 255.0).count()
+/// A turn about a slanted axis.
+pub fn turned(degrees: f32) -> Quat {
+    Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), degrees.to_radians())
 }
 
-/// A sun that shines along an axis of a frame, without shadow maps.
-pub fn light_from(small: &mut Small, frame: Transform, to: Vec3, part: f32) -> Entity {
-    let at = frame * Transform::IDENTITY.looking_to(-to, Vec3::new(0.1, 0.9, 0.2));
-    let bundle = (Object, bright(part), at);
-    small.world().spawn(bundle).id()
+/// A sun without shadow maps, whose light comes from a direction.
+pub fn light_from(small: &mut Small, to: Vec3, part: f32) -> Entity {
+    let at = Transform::IDENTITY.looking_to(-to, Vec3::new(0.1, 0.9, 0.2));
+    small.world().spawn((Object, bright(part), at)).id()
 }
 
+/// The darkness where a share of all light arrives.
 pub fn tone(hatching: &Hatching, share: f64) -> f64 {
-    let hatch = Hatch {
-        settings: hatching,
-        scale: 1.0,
-        drawing: 0,
-    };
-    hatch.tone(share.sqrt()) * f64::from(hatching.at_near)
+    Hatch::new(hatching).tone(share.sqrt()) * f64::from(hatching.at_near)
 }
 
 /// Light from the front, from behind, and from all around.
 const LIGHT: [[f32; 3]; 3] = [[0.3, 0.9, 0.0], [0.6, 0.4, 0.0], [0.0, 0.6, 0.2]];
-
-fn ambient(part: f32) -> GlobalAmbientLight {
-    GlobalAmbientLight {
-        brightness: part * full() / std::f32::consts::PI,
-        ..default()
-    }
-}
 
 /// Truth: a flat wall on which a share of all light arrives has the darkness that this share asks for, at
 /// every angle, with one layer and with three.
@@ -99,44 +84,39 @@ fn flat_walls_have_the_tone_of_every_light() {
 
 /// `walls`: their light, and their angles in degrees.
 fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
-    let mut worst = [0.0f64; 2];
     let mut small = room(SIZE, 0.0);
     for &([front, behind, around], angles) in walls {
         let share = f64::from((front + around) / (front + behind + around));
-        small.world().insert_resource(ambient(around));
+        small.world().insert_resource(GlobalAmbientLight {
+            brightness: around * full() / std::f32::consts::PI,
+            ..default()
+        });
         for degrees in angles {
             small.clear();
-            light_from(&mut small, Transform::IDENTITY, Vec3::Z, front);
-            light_from(&mut small, Transform::IDENTITY, -Vec3::Z, behind);
-            let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-            let axis = Vec3::new(0.6, 0.8, 0.0);
+            light_from(&mut small, Vec3::Z, front);
+            light_from(&mut small, -Vec3::Z, behind);
             // Lines at 45 degrees would all lie in the same way on pixels.
-            let roll = Quat::from_rotation_z(0.2);
-            let turn = Quat::from_axis_angle(axis, degrees.to_radians()) * roll;
+            let turn = turned(*degrees) * Quat::from_rotation_z(0.2);
             let at = Transform::from_rotation(turn);
-            put(&mut small, wall, &ToonLight::default(), at);
-            for layers in [1, 3] {
-                for (random, worst) in [0.0, 1.0].into_iter().zip(&mut worst) {
-                    let s = Hatching {
-                        layers,
-                        breaks: random,
-                        wobble: random,
-                        pressure: 0.5 * random,
-                        at_near: 1.0 - 0.2 * random,
-                        ..plain()
-                    };
-                    set_light(&mut small, &with(s));
-                    let (got, want) = (mean(&covers(&mut small)), tone(&s, share));
-                    println!(
-                        "share {share:.2}, {degrees} degrees, {layers} layers, random {random}: {got:.3}, {want:.3}"
-                    );
-                    *worst = worst.max((got - want).abs());
-                }
+            put(&mut small, wall(), &ToonLight::default(), at);
+            let styles = [1, 3].map(|layers| [(layers, 0.0), (layers, 1.0)]);
+            for (layers, random) in styles.concat() {
+                let limit = if random > 0.0 { 0.04 } else { 0.02 };
+                let s = Hatching {
+                    layers,
+                    breaks: random,
+                    wobble: random,
+                    pressure: 0.5 * random,
+                    at_near: 1.0 - 0.2 * random,
+                    ..plain()
+                };
+                set_light(&mut small, &with(s));
+                let (got, want) = (mean(&covers(&mut small)), tone(&s, share));
+                let what = format!("share {share:.2}, {degrees} degrees, {s:?}");
+                assert!((got - want).abs() < limit, "{what}: {got}, {want}");
             }
         }
     }
-    println!("mean tone off by up to {worst:.3?}");
-    assert!(worst[0] < 0.02 && worst[1] < 0.04, "{worst:?}");
 }
 
 /// Every mode of a ramp gives the share of what the same ramp gives where all light arrives.
@@ -144,16 +124,10 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
 fn strokes_follow_the_tones_of_ramps() {
     let grey = |part| Color::linear_rgb(part, part, part);
     let mut small = room(SIZE, 0.0);
-    for mode in [
-        RampMode::LightFraction,
-        RampMode::PerLight,
-        RampMode::Brightest,
-    ] {
+    for mode in MODES {
         small.clear();
         // 60 degrees from the normal.
-        let to = Vec3::new(0.0, 0.75f32.sqrt(), 0.5);
-        light_from(&mut small, Transform::IDENTITY, to, 0.8);
-        let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
+        light_from(&mut small, Vec3::new(0.0, 0.75f32.sqrt(), 0.5), 0.8);
         let stops = [
             RampStop::new(0.0, Color::BLACK),
             RampStop::new(0.3, grey(0.3)),
@@ -166,9 +140,8 @@ fn strokes_follow_the_tones_of_ramps() {
             }),
             ..with(plain())
         };
-        put(&mut small, wall, &light, Transform::IDENTITY);
+        put(&mut small, wall(), &light, Transform::IDENTITY);
         let (got, want) = (mean(&covers(&mut small)), tone(&plain(), 0.3 / 0.9));
-        println!("{mode:?}: {got:.3}, {want:.3}");
         assert!((got - want).abs() < 0.02, "{mode:?}: {got}, {want}");
     }
 }
@@ -183,127 +156,144 @@ pub fn frames() -> [Transform; 3] {
     ]
 }
 
-fn ball() -> Mesh {
+pub fn ball() -> Mesh {
     Sphere::new(0.8).mesh().uv(64, 32)
 }
 
-/// The eye and the light of the pictures below, in a frame.
-pub fn seen_from(small: &mut Small, frame: Transform, sun: Entity) {
-    small.insert(frame * Transform::from_xyz(0.0, 0.0, 5.0));
-    let to = Vec3::new(0.5, 0.6, 0.7);
-    let at = frame * Transform::IDENTITY.looking_to(-to, Vec3::Y);
-    small.world().entity_mut(sun).insert(at);
-}
-
 /// An empty white room with a sun, and a seventh of the light from all around.
-pub fn studio() -> (Small, Entity) {
-    let mut small = room(SIZE, 0.1);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
-    let sun = light_from(&mut small, Transform::IDENTITY, Vec3::Z, 0.6);
-    seen_from(&mut small, Transform::IDENTITY, sun);
-    (small, sun)
+pub struct WhiteRoom {
+    pub small: Small,
+    sun: Entity,
 }
 
-/// Where all of it is seen, edges of the light and the mesh may round to another pixel.
-pub fn assert_same(still: &[f64], now: &[f64], what: &str) {
-    assert!(still.iter().any(|c| *c > 0.9), "{what}: no ink");
-    let apart = differ(still, now);
-    println!("{what}: {apart} of {} pixels differ", still.len());
-    assert!(apart < still.len() / 200, "{what}: {apart}");
+impl WhiteRoom {
+    pub fn new() -> Self {
+        let mut small = room(SIZE, 0.1);
+        small.insert(Camera {
+            clear_color: Color::WHITE.into(),
+            ..default()
+        });
+        let sun = light_from(&mut small, Vec3::Z, 0.6);
+        Self { small, sun }
+    }
+
+    /// The darkness that the camera sees which moves with a frame, with the sun.
+    fn seen_from(&mut self, frame: Transform) -> Vec<f64> {
+        let small = &mut self.small;
+        small.insert(frame * Transform::from_xyz(0.0, 0.0, 5.0));
+        let to = Vec3::new(0.5, 0.6, 0.7);
+        let at = frame * Transform::IDENTITY.looking_to(-to, Vec3::Y);
+        small.world().entity_mut(self.sun).insert(at);
+        covers(small)
+    }
+
+    /// Checks that the camera sees the same picture from every frame, after something has moved with it.
+    /// Edges of the light and the mesh may round to another pixel.
+    pub fn assert_stays(
+        &mut self,
+        still: &[f64],
+        frames: impl IntoIterator<Item = Transform>,
+        mut moved: impl FnMut(&mut World, Transform),
+    ) {
+        assert!(still.iter().any(|c| *c > 0.9), "no ink");
+        for frame in frames {
+            moved(self.small.world(), frame);
+            let apart = differ(still, &self.seen_from(frame), 2.0 / 255.0);
+            println!("{frame:?}: {apart} of {} pixels differ", still.len());
+            assert!(apart < still.len() / 200, "{frame:?}: {apart}");
+        }
+    }
+
+    pub fn still(&mut self) -> Vec<f64> {
+        self.seen_from(Transform::IDENTITY)
+    }
 }
 
-/// Truth: strokes stay on a mesh that moves, turns and is stretched: the camera that follows sees the same
-/// picture. Strokes of the page do not.
-#[test]
-fn strokes_stay_on_what_moves() {
-    let (mut small, sun) = studio();
+/// Checks that strokes or dots stay on a mesh that moves, turns and is stretched.
+pub fn assert_marks_stay(s: Hatching) {
+    let mut room = WhiteRoom::new();
+    room.small.insert((DepthPrepass, NormalPrepass));
     let own =
         Transform::from_rotation(Quat::from_rotation_x(0.4)).with_scale(Vec3::new(1.2, 0.7, 1.0));
-    let object = put(&mut small, ball(), &with(inked()), own);
-    let still = covers(&mut small);
-    for frame in frames() {
-        small.world().entity_mut(object).insert(frame * own);
-        seen_from(&mut small, frame, sun);
-        assert_same(&still, &covers(&mut small), "moved");
-    }
-    // Strokes lie in the mesh: seen from elsewhere, they are elsewhere in the picture.
-    small.world().entity_mut(object).insert(own);
-    let turned = covers(&mut small);
-    assert!(differ(&still, &turned) > still.len() / 20);
+    let object = put(&mut room.small, ball(), &with(s), own);
+    let still = room.still();
+    room.assert_stays(&still, frames(), |world, frame| {
+        world.entity_mut(object).insert(frame * own);
+    });
+    // Marks lie in the mesh: seen from elsewhere, they are elsewhere in the picture.
+    room.small.world().entity_mut(object).insert(own);
+    let turned = covers(&mut room.small);
+    assert!(differ(&still, &turned, 2.0 / 255.0) > still.len() / 20);
+}
+
+/// Truth: strokes stay on a mesh that moves: the camera that follows sees the same picture. Strokes of the
+/// page do not.
+#[test]
+fn strokes_stay_on_what_moves() {
+    assert_marks_stay(inked());
+}
+
+/// The room, in which a mesh takes the place of a ball after its picture was taken.
+fn in_place_of_a_ball(mesh: Mesh, mut room: WhiteRoom) -> (WhiteRoom, Entity, Vec<f64>) {
+    let small = &mut room.small;
+    let plain = put(small, ball(), &with(inked()), Transform::IDENTITY);
+    let still = room.still();
+    room.small.world().despawn(plain);
+    let light = with(inked());
+    let object = put(&mut room.small, mesh, &light, Transform::IDENTITY);
+    (room, object, still)
 }
 
 /// Truth: strokes stay on a skinned mesh, whatever its entity does.
 #[test]
 fn strokes_stay_on_skinned_meshes() {
-    let (mut small, sun) = studio();
+    let mut room = WhiteRoom::new();
     // Prepasses have a vertex shader of their own: both must give the same depth.
-    small.insert((DepthPrepass, NormalPrepass));
-    let mut mesh = ball();
-    let count = mesh.count_vertices();
-    mesh.insert_attribute(
-        Mesh::ATTRIBUTE_JOINT_INDEX,
-        VertexAttributeValues::Uint16x4(vec![[0; 4]; count]),
-    );
-    let weights = vec![[1.0, 0.0, 0.0, 0.0]; count];
-    mesh.insert_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights);
-    let plain = put(&mut small, ball(), &with(inked()), Transform::IDENTITY);
-    let still = covers(&mut small);
-    small.world().despawn(plain);
-    let object = put(&mut small, mesh, &with(inked()), Transform::IDENTITY);
-    let world = small.world();
-    let poses = SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]);
-    let inverse_bindposes = world
-        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
-        .add(poses);
+    room.small.insert((DepthPrepass, NormalPrepass));
+    let count = ball().count_vertices();
+    let joints = VertexAttributeValues::Uint16x4(vec![[0; 4]; count]);
+    let weights = vec![[1.0f32, 0.0, 0.0, 0.0]; count];
+    let mesh = ball()
+        .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_INDEX, joints)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights);
+    let (mut room, object, still) = in_place_of_a_ball(mesh, room);
+    let world = room.small.world();
+    let mut poses = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
+    let inverse_bindposes = poses.add(SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]));
     let joint = world.spawn(Transform::IDENTITY).id();
-    world.entity_mut(object).insert((
-        SkinnedMesh {
-            inverse_bindposes,
-            joints: vec![joint],
-        },
-        bevy::camera::visibility::NoFrustumCulling,
-    ));
-    for (k, frame) in frames().into_iter().enumerate() {
-        small.world().entity_mut(joint).insert(frame);
-        let aside = Transform::from_xyz(k as f32, 0.0, 0.0);
-        small.world().entity_mut(object).insert(aside);
-        seen_from(&mut small, frame, sun);
-        assert_same(&still, &covers(&mut small), "skinned");
-    }
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints: vec![joint],
+    };
+    world.entity_mut(object).insert((skin, NoFrustumCulling));
+    let mut aside = Transform::IDENTITY;
+    room.assert_stays(&still, frames(), |world, frame| {
+        world.entity_mut(joint).insert(frame);
+        world.entity_mut(object).insert(aside);
+        aside.translation.x += 1.0;
+    });
 }
 
 /// Truth: strokes stay on a morphed mesh.
 #[test]
 fn strokes_stay_on_morphed_meshes() {
-    let (mut small, sun) = studio();
     let by = Vec3::new(0.9, -0.6, 0.4);
     let mut mesh = ball();
-    let count = mesh.count_vertices();
-    mesh.set_morph_targets(vec![
-        MorphAttributes {
-            position: by,
-            ..default()
-        };
-        count
-    ]);
-    let plain = put(&mut small, ball(), &with(inked()), Transform::IDENTITY);
-    let still = covers(&mut small);
-    small.world().despawn(plain);
-    let object = put(&mut small, mesh, &with(inked()), Transform::IDENTITY);
-    for weight in [0.0, 0.5, 1.0] {
-        small.world().entity_mut(object).insert((
-            MorphWeights::new(vec![weight], None).expect("one weight"),
-            MeshMorphWeights::Value {
-                weights: vec![weight],
-            },
-            bevy::camera::visibility::NoFrustumCulling,
+    let target = MorphAttributes {
+        position: by,
+        ..default()
+    };
+    mesh.set_morph_targets(vec![target; mesh.count_vertices()]);
+    let (mut room, object, still) = in_place_of_a_ball(mesh, WhiteRoom::new());
+    let frames = [0.0, 0.5, 1.0].map(|weight| Transform::from_translation(weight * by));
+    room.assert_stays(&still, frames, |world, frame| {
+        let weights = vec![frame.translation.x / by.x];
+        world.entity_mut(object).insert((
+            MorphWeights::new(weights.clone(), None).expect("one weight"),
+            MeshMorphWeights::Value { weights },
+            NoFrustumCulling,
         ));
-        seen_from(&mut small, Transform::from_translation(weight * by), sun);
-        assert_same(&still, &covers(&mut small), "morphed");
-    }
+    });
 }
 
 /// Shadows of other things are hatched, with the tone of the light that is left.
@@ -318,25 +308,16 @@ fn cast_shadows_are_hatched() {
         ..bright(0.6)
     };
     sun(&mut small, Vec3::new(0.0, 0.6, 1.0), shadows);
-    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-    put(&mut small, wall, &with(plain()), Transform::IDENTITY);
+    put(&mut small, wall(), &with(plain()), Transform::IDENTITY);
     // Its shadow covers the lower part of the picture; itself it is above.
     let above = Transform::from_xyz(0.0, 2.3, 3.0);
-    put(
-        &mut small,
-        Cuboid::new(9.0, 2.0, 0.2),
-        &with(plain()),
-        above,
-    );
+    let caster = Cuboid::new(9.0, 2.0, 0.2);
+    put(&mut small, caster, &with(plain()), above);
     let found = covers(&mut small);
-    let rows = |rows: Range<u32>| {
-        let range = (rows.start * SIZE.x) as usize..(rows.end * SIZE.x) as usize;
-        mean(&found[range])
-    };
+    let rows = |rows: Range<usize>| mean(&found[rows.start * 160..rows.end * 160]);
     // The shadow reaches from 1.5 to -0.5: rows 0 to 120.
     let (dark, light) = (rows(10..110), rows(130..160));
     let want = tone(&plain(), 0.25);
-    println!("shadow {dark:.3}, not {want:.3}; light {light:.3}");
     assert!((dark - want).abs() < 0.03, "{dark}, {want}");
     assert!(light < 0.01, "{light}");
 }
@@ -344,25 +325,21 @@ fn cast_shadows_are_hatched() {
 /// A material without strokes is what it was, to the bit, also if they are not seen.
 #[test]
 fn no_strokes_change_nothing() {
-    let (mut small, _) = studio();
-    put(
-        &mut small,
-        ball(),
-        &ToonLight::default(),
-        Transform::IDENTITY,
-    );
-    let before = drawn(&mut small);
+    let mut room = WhiteRoom::new();
+    room.still();
+    let small = &mut room.small;
+    put(small, ball(), &ToonLight::default(), Transform::IDENTITY);
+    let before = drawn(small);
     let unseen = Hatching {
         opacity: 0.0,
         ..default()
     };
-    set_light(&mut small, &with(unseen));
-    assert_eq!(apart(&before, &drawn(&mut small)), 0);
+    set_light(small, &with(unseen));
+    assert_eq!(apart(&before, &drawn(small)), 0);
     // Where all light arrives, there are none.
-    let lit = |picture: &RgbaImage, x: u32, y: u32| *picture.get_pixel(x, y);
-    set_light(&mut small, &with(default()));
-    let after = drawn(&mut small);
-    assert_eq!(lit(&before, 95, 60), lit(&after, 95, 60));
+    set_light(small, &with(default()));
+    let after = drawn(small);
+    assert_eq!(before.get_pixel(95, 60), after.get_pixel(95, 60));
     assert!(apart(&before, &after) > 50);
 }
 
@@ -370,9 +347,9 @@ fn no_strokes_change_nothing() {
 #[test]
 fn shades_keep_their_mean_colour() {
     let mut small = room(SIZE, 0.2);
-    light_from(&mut small, Transform::IDENTITY, -Vec3::Z, 0.6);
-    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-    put(&mut small, wall, &ToonLight::default(), Transform::IDENTITY);
+    light_from(&mut small, -Vec3::Z, 0.6);
+    let light = ToonLight::default();
+    put(&mut small, wall(), &light, Transform::IDENTITY);
     let bare = mean(&covers(&mut small));
     let s = Hatching {
         ground: HatchingGround::Color,
@@ -388,7 +365,9 @@ fn shades_keep_their_mean_colour() {
 /// Every pixel is a number, whatever the settings and the mesh are.
 #[test]
 fn extreme_strokes_are_finite() {
-    let (mut small, _) = studio();
+    let mut room = WhiteRoom::new();
+    room.still();
+    let small = &mut room.small;
     small.headless.resize(UVec2::splat(48), 1.0);
     let target = small.headless.render_target();
     small.insert((Hdr, target));
@@ -396,40 +375,25 @@ fn extreme_strokes_are_finite() {
     let mut bare = ball();
     bare.remove_attribute(Mesh::ATTRIBUTE_NORMAL);
     bare.remove_attribute(Mesh::ATTRIBUTE_UV_0);
-    let mut flat = ball();
-    let count = flat.count_vertices();
-    flat.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0; 3]; count]);
+    let normals = vec![[0.0f32; 3]; ball().count_vertices()];
+    let flat = ball().with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
+    let light = ToonLight::default();
     for (x, mesh) in [(-0.4, ball()), (0.0, bare), (0.4, flat)] {
-        let at = Transform::from_xyz(x, 0.0, 0.0);
-        put(&mut small, mesh, &ToonLight::default(), at);
+        put(small, mesh, &light, Transform::from_xyz(x, 0.0, 0.0));
     }
     let squashed = Transform::from_scale(Vec3::new(1.0, 0.0, 1e-20));
-    put(&mut small, ball(), &ToonLight::default(), squashed);
-    for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
+    put(small, ball(), &light, squashed);
+    for x in EXTREMES {
         for anchor in [HatchingAnchor::Object, HatchingAnchor::Page] {
             let s = Hatching {
                 anchor,
-                shadows: x,
-                highlights: x,
-                gamma: x,
-                tones: u32::MAX,
-                spacing: x,
-                layers: 99,
-                layer_darkness: x,
-                angle: x,
-                length: x,
-                breaks: x,
-                wobble: x,
-                pressure: x,
-                rate: x,
-                at_near: x,
-                ..default()
+                ..extreme(HatchingMarks::Strokes, x)
             };
-            set_light(&mut small, &with(s));
+            set_light(small, &with(s));
             small.headless.step(3);
             let found = small.loaded();
-            let all = found.pixels.iter().flatten();
-            assert!(all.into_iter().all(|c| c.is_finite()), "{x}, {anchor:?}");
+            let mut all = found.pixels.iter().flatten();
+            assert!(all.all(|c| c.is_finite()), "{x}, {anchor:?}");
         }
     }
     assert_eq!(small.errors(), 0);

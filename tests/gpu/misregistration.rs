@@ -2,7 +2,11 @@
 
 use bevy_comics_testkit::reference::misregistration::strays;
 
-use crate::{halftone::covered, pictures::assert_pass_matches_the_reference, prelude::*};
+use crate::{
+    halftone::{apart, assert_background_stays, assert_lines_stay, shot, view_part},
+    pictures::assert_pass_matches_the_reference,
+    prelude::*,
+};
 
 const STILL: Misregistration = Misregistration {
     cyan: Vec2::ZERO,
@@ -15,21 +19,10 @@ const STILL: Misregistration = Misregistration {
     amount: 1.0,
 };
 
-fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
-    small.style(style);
-    small.settle();
-    small.picture()
-}
-
-fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> u8 {
-    let pairs = a.as_raw().iter().zip(b.as_raw());
-    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
-}
-
 /// A code of rounding: the picture between the passes has 11 bits.
 #[test]
 fn plates_in_register_are_the_picture() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(size(), Msaa::Off);
     let plain = shot(&mut small, &ComicStyle::new());
     for black_generation in [0.0, 0.5, 1.0] {
         let s = Misregistration {
@@ -46,66 +39,40 @@ fn plates_in_register_are_the_picture() {
 /// parts of one as bilinear.
 #[test]
 fn a_moved_plate_is_the_moved_picture() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(size(), Msaa::Off);
     let colors = shot(&mut small, &ComicStyle::new());
-    for (channel, s) in [
-        (
-            0,
-            Misregistration {
-                cyan: Vec2::new(3.0, -2.0),
-                ..STILL
-            },
-        ),
-        (
-            1,
-            Misregistration {
-                magenta: Vec2::new(3.0, -2.0),
-                ..STILL
-            },
-        ),
-        (
-            2,
-            Misregistration {
-                yellow: Vec2::new(3.0, -2.0),
-                ..STILL
-            },
-        ),
-    ] {
-        let s = Misregistration {
+    let mut moved = |channel: usize, by: Vec2| {
+        let mut s = Misregistration {
             black_generation: 0.0,
-            ..s
+            ..STILL
         };
-        let moved = shot(&mut small, &ComicStyle::new().with(s));
+        *[&mut s.cyan, &mut s.magenta, &mut s.yellow][channel] = by;
+        shot(&mut small, &ComicStyle::new().with(s))
+    };
+    for channel in 0..3 {
+        let moved = moved(channel, Vec2::new(3.0, -2.0));
         let mut changed = 0;
-        for y in 2..60 {
-            for x in 4..90 {
-                for c in 0..3 {
-                    let from = if c == channel { (x - 3, y + 2) } else { (x, y) };
-                    let want = colors.get_pixel(from.0, from.1).0[c];
-                    let found = moved.get_pixel(x, y).0[c];
-                    assert!(found.abs_diff(want) <= 1, "{channel}: ({x}, {y})");
-                }
-                changed += usize::from(moved.get_pixel(x, y) != colors.get_pixel(x, y));
-            }
+        for (x, y) in (2..60).flat_map(|y| (4..90).map(move |x| (x, y))) {
+            let (own, from) = (colors.get_pixel(x, y), colors.get_pixel(x - 3, y + 2));
+            let found = moved.get_pixel(x, y);
+            let mut want = *own;
+            want[channel] = from[channel];
+            let is_near = (0..3).all(|c| found[c].abs_diff(want[c]) <= 1);
+            assert!(is_near, "{channel}: ({x}, {y})");
+            changed += usize::from(found != own);
         }
         assert!(changed > 200, "{changed}");
     }
     // Half a pixel: the mean of two.
-    let s = Misregistration {
-        cyan: Vec2::new(0.5, 0.0),
-        black_generation: 0.0,
-        ..STILL
-    };
-    let moved = shot(&mut small, &ComicStyle::new().with(s));
-    for y in 1..63 {
-        for x in 1..95 {
-            let [a, b] = [x - 1, x].map(|x| linear(&colors, x, y)[0]);
-            let found = linear(&moved, x, y)[0];
-            assert!((found - 0.5 * (a + b)).abs() < 0.01, "({x}, {y})");
-        }
+    let moved = moved(0, Vec2::new(0.5, 0.0));
+    for (x, y) in (1..63).flat_map(|y| (1..95).map(move |x| (x, y))) {
+        let [a, b] = [x - 1, x].map(|x| linear(&colors, x, y)[0]);
+        let found = linear(&moved, x, y)[0];
+        assert!((found - 0.5 * (a + b)).abs() < 0.01, "({x}, {y})");
     }
 }
 
+/// The whole pass, also before a screen.
 #[test]
 fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
@@ -117,22 +84,19 @@ fn every_pixel_matches_the_reference() {
             ..default()
         })
         .with(Outlines::default());
-    assert_pass_matches_the_reference(&mut small, &style, None, "whole");
-    let screened = style.clone().with(Halftone::default());
-    assert_pass_matches_the_reference(&mut small, &screened, None, "screened");
-    let strayed = style.clone().with(Misregistration {
+    let strayed = Misregistration {
         drift: 3.0,
         ..default()
-    });
-    assert_pass_matches_the_reference(&mut small, &strayed, None, "strayed");
+    };
+    for (style, what) in [
+        (style.clone(), "whole"),
+        (style.clone().with(Halftone::default()), "screened"),
+        (style.clone().with(strayed), "strayed"),
+    ] {
+        assert_pass_matches_the_reference(&mut small, &style, None, what);
+    }
     let viewport = [11, 5, 43, 30];
-    let entity = small.camera;
-    let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(viewport[0], viewport[1]),
-        physical_size: UVec2::new(viewport[2], viewport[3]),
-        ..default()
-    });
+    view_part(&mut small, viewport);
     assert_pass_matches_the_reference(&mut small, &style, Some(viewport), "viewport");
     assert_eq!(small.errors(), 0);
 }
@@ -141,62 +105,53 @@ fn every_pixel_matches_the_reference() {
 #[test]
 fn cells_read_the_moved_picture() {
     let mut small = Small::new(UVec2::new(40, 28), Msaa::Off);
+    let cells = Halftone {
+        sampling: ScreenSampling::Cell,
+        ..default()
+    };
     let style = ComicStyle::new()
         .with(Misregistration::default())
-        .with(Halftone {
-            sampling: ScreenSampling::Cell,
-            ..default()
-        })
+        .with(cells)
         .with(Outlines::default());
     assert_pass_matches_the_reference(&mut small, &style, None, "three passes");
     assert_eq!(small.errors(), 0);
 }
 
-/// Lines cover the pixels that they cover without the effect, though the colours beside them
-/// are moved.
+/// The colours beside lines are moved, the lines are not.
 #[test]
 fn lines_stay_in_place() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     let s = Misregistration {
         cyan: Vec2::new(6.0, 0.3),
         magenta: Vec2::new(-0.5, 6.0),
         ..default()
     };
-    let bare = covered(&mut small, &ComicStyle::new());
-    let moved = covered(&mut small, &ComicStyle::new().with(s));
-    assert!(bare.iter().filter(|covered| **covered).count() > 100);
-    assert_eq!(bare, moved);
+    assert_lines_stay(size(), s);
 }
 
 /// The split view compares with the unstyled picture, and debug views are those of one
 /// pass.
 #[test]
 fn comparisons_and_debug_views_see_through_the_passes() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(size(), Msaa::Off);
     let plain = shot(&mut small, &ComicStyle::new());
-    let style = ComicStyle::new()
-        .with(Desaturation::default())
-        .with(Misregistration::default());
+    let alone = ComicStyle::new().with(Desaturation::default());
+    let style = alone.clone().with(Misregistration::default());
     let styled = shot(&mut small, &style);
     small.insert(SplitView::default());
-    small.settle();
-    let split = small.picture();
+    let split = small.settle().picture();
     for y in 0..64 {
         assert_eq!(split.get_pixel(20, y), plain.get_pixel(20, y));
         assert_eq!(split.get_pixel(80, y), styled.get_pixel(80, y));
     }
-    let camera = small.camera;
-    small.world().entity_mut(camera).remove::<SplitView>();
+    small.camera_mut().remove::<SplitView>();
     for view in [
         DebugView::DepthMap,
         DebugView::Saturation,
         DebugView::RawRange,
     ] {
-        let alone = ComicStyle::new().with(Desaturation::default());
         small.insert(view);
         let one = shot(&mut small, &alone);
-        let two = shot(&mut small, &style);
-        assert_eq!(one, two, "{view:?}");
+        assert_eq!(one, shot(&mut small, &style), "{view:?}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -205,13 +160,15 @@ fn comparisons_and_debug_views_see_through_the_passes() {
 #[test]
 fn plates_drift_from_page_to_page() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
-    let pages = |small: &mut Small, rate: f32| {
-        let s = Misregistration {
+    let strayed = |rate: f32| {
+        ComicStyle::new().with(Misregistration {
             drift: 4.0,
             rate,
             ..STILL
-        };
-        let mut film = vec![shot(small, &ComicStyle::new().with(s))];
+        })
+    };
+    let pages = |small: &mut Small, rate: f32| {
+        let mut film = vec![shot(small, &strayed(rate))];
         for _ in 0..30 {
             small.headless.step(1);
             film.push(small.picture());
@@ -221,42 +178,34 @@ fn plates_drift_from_page_to_page() {
     assert_eq!(pages(&mut small, 0.0), 1);
     // A new page in every fifth frame.
     assert_eq!(pages(&mut small, 12.0), 7);
-    let strayed = ComicStyle::new().with(Misregistration {
-        drift: 4.0,
-        ..STILL
-    });
-    let before = shot(&mut small, &strayed);
-    let camera = small.camera;
-    small.world().trigger(CameraCut { entity: camera });
-    small.settle();
-    assert_ne!(small.picture(), before);
+    let before = shot(&mut small, &strayed(0.0));
+    let entity = small.camera;
+    small.world().trigger(CameraCut { entity });
+    assert_ne!(small.settle().picture(), before);
     assert_eq!(small.errors(), 0);
 }
 
 /// Every axis of every plate strays by up to the drift to either side, evenly, and on its own.
 #[test]
 fn plates_stray_evenly() {
-    let pages = 4000;
-    let mut sums = [[0.0; 6]; 6];
-    let mut most: f64 = 0.0;
-    for page in 0..pages {
-        let strays = strays(page / 50, page % 50);
-        let axes: Vec<f64> = strays.into_iter().flatten().collect();
-        for (i, a) in axes.iter().enumerate() {
-            most = most.max(a.abs());
-            for (j, b) in axes.iter().enumerate() {
-                sums[i][j] += a * b / f64::from(pages);
-            }
-        }
-    }
+    let pages: Vec<[f64; 6]> = (0..4000)
+        .map(|page| {
+            let [[a, b], [c, d], [e, f]] = strays(page / 50, page % 50);
+            [a, b, c, d, e, f]
+        })
+        .collect();
+    let most = pages
+        .iter()
+        .flatten()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
     assert!((0.99..=1.0).contains(&most), "{most}");
-    for (i, row) in sums.iter().enumerate() {
-        for (j, found) in row.iter().enumerate() {
-            // The square of an even number from -1 to 1 is 1/3 in the mean. Means of 4000
-            // products deviate by 0.3 / 63.
-            let want = if i == j { 1.0 / 3.0 } else { 0.0 };
-            assert!((found - want).abs() < 0.025, "{i}, {j}: {found}");
-        }
+    for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+        let products = pages.iter().map(|axes| axes[i] * axes[j]);
+        let found = products.sum::<f64>() / pages.len() as f64;
+        // The square of an even number from -1 to 1 is 1/3 in the mean. Means of 4000
+        // products deviate by 0.3 / 63.
+        let want = if i == j { 1.0 / 3.0 } else { 0.0 };
+        assert!((found - want).abs() < 0.025, "{i}, {j}: {found}");
     }
 }
 
@@ -265,31 +214,19 @@ fn plates_stray_evenly() {
 #[test]
 fn a_transparent_background_stays() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let far = Misregistration {
+        cyan: Vec2::new(6.0, 0.3),
+        magenta: Vec2::new(-0.5, -5.0),
+        yellow: Vec2::new(-7.0, -0.7),
+        black: Vec2::new(3.0, 0.0),
+        ..default()
+    };
+    let style = ComicStyle::new().with(Desaturation::default()).with(far);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
-        small.insert(Camera {
-            clear_color: Color::NONE.into(),
-            ..default()
-        });
-        let far = Misregistration {
-            cyan: Vec2::new(6.0, 0.3),
-            magenta: Vec2::new(-0.5, -5.0),
-            yellow: Vec2::new(-7.0, -0.7),
-            black: Vec2::new(3.0, 0.0),
-            ..default()
-        };
-        let style = ComicStyle::new().with(Desaturation::default()).with(far);
+        crate::halftone::fill(&mut small, Color::NONE);
         assert_pass_matches_the_reference(&mut small, &style, None, "transparent");
-        let (read, wrote) = small.pass();
-        let mut empty = 0;
-        for (read, wrote) in read.pixels.iter().zip(&wrote.pixels) {
-            assert_eq!(read[3], wrote[3], "opacity stays");
-            if read[3] == 0.0 {
-                assert_eq!(*wrote, [0.0; 4]);
-                empty += 1;
-            }
-        }
-        assert!(empty > 300, "{empty} pixels of background");
+        assert_background_stays(&small, 300);
         assert_eq!(small.errors(), 0);
     }
 }
@@ -300,11 +237,11 @@ fn a_transparent_background_stays() {
 fn light_and_settings_out_of_range_are_finite() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     small.insert(Hdr);
-    let bright = Color::linear_rgb(60000.0, 1e9, 1e-30);
+    let bright = unlit(Color::linear_rgb(60000.0, 1e9, 1e-30));
     let at = Transform::from_xyz(0.0, 1.0, 2.0);
-    small.put(Sphere::new(0.6), unlit(bright), at);
-    let mut shown = Vec::new();
-    for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, 1e30, 32.0] {
+    small.put(Sphere::new(0.6), bright, at);
+    let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, 1e30, 32.0];
+    let [_, infinite, _, _, huge, end] = numbers.map(|x| {
         let s = Misregistration {
             cyan: Vec2::splat(x),
             magenta: Vec2::splat(x),
@@ -318,15 +255,12 @@ fn light_and_settings_out_of_range_are_finite() {
         small.insert(s).settle();
         assert!(small.ran(ComicsStage::of::<Misregistration>()), "{x}");
         let (_, after) = small.pass();
-        let inside = after.pixels.iter().flatten();
-        assert!(inside.copied().all(|v| (0.0..=1.0).contains(&v)), "{x}");
+        let mut values = after.pixels.iter().flatten();
+        assert!(values.all(|v| (0.0..=1.0).contains(v)), "{x}");
         // Every page is another one at these rates.
         small.insert(Misregistration { rate: 0.0, ..s }).settle();
-        shown.push(small.pass().1.pixels);
-    }
-    let [_, infinite, _, _, huge, end] = &shown[..] else {
-        panic!("six pictures");
-    };
+        small.pass().1.pixels
+    });
     assert!(huge == end, "1e30 is the end of the ranges");
     assert!(infinite != end, "infinity is the default");
     assert_eq!(small.errors(), 0);

@@ -8,25 +8,25 @@ use bevy_comics_testkit::{
     screens::ideal,
 };
 
-use crate::prelude::*;
+use crate::{halftone::shot, prelude::*};
 
 const SIZE: UVec2 = UVec2::new(120, 90);
 
 /// One ink, of which a dot of a tone has exactly its area.
-fn spot(anchor: ScreenAnchor) -> Halftone {
+fn spot() -> Halftone {
     Halftone {
         mode: HalftoneMode::Spot,
         shape: ScreenShape::Round,
         cell_size: 7.0,
-        anchor,
         ..ideal()
     }
 }
 
-fn shot(small: &mut Small, s: Halftone) -> image::RgbaImage {
-    small.style(&ComicStyle::new().with(s));
-    small.settle();
-    small.picture()
+fn printed(small: &mut Small, anchor: ScreenAnchor) -> image::RgbaImage {
+    shot(
+        small,
+        &ComicStyle::new().with(Halftone { anchor, ..spot() }),
+    )
 }
 
 /// A grey board of 80 by 60 pixels in front of a view in which a unit is a pixel.
@@ -43,10 +43,6 @@ fn board() -> (Small, Entity) {
     let grey = unlit(Color::linear_rgb(0.6, 0.6, 0.6));
     let board = small.put(Rectangle::new(80.0, 60.0), grey, Transform::IDENTITY);
     (small, board)
-}
-
-fn place(small: &mut Small, entity: Entity, at: Transform) {
-    small.world().entity_mut(entity).insert(at);
 }
 
 /// The similarity of an object in the view of the board.
@@ -69,18 +65,8 @@ fn inner() -> impl Iterator<Item = (u32, u32)> {
 #[test]
 fn dots_lie_on_their_object() {
     let (mut small, board) = board();
-    let plain = shot(
-        &mut small,
-        Halftone {
-            opacity: 0.0,
-            ..spot(ScreenAnchor::View)
-        },
-    );
+    let plain = shot(&mut small, &ComicStyle::new());
     let tone = 1.0 - linear(&plain, 60, 45)[0];
-    small
-        .world()
-        .entity_mut(board)
-        .insert(PatternAnchor::default());
     let turned = Quat::from_rotation_z(0.4);
     for at in [
         Transform::IDENTITY,
@@ -93,30 +79,24 @@ fn dots_lie_on_their_object() {
         Transform::from_scale(Vec3::splat(1.41)),
         Transform::from_rotation(Quat::from_rotation_y(0.6) * turned),
     ] {
-        place(&mut small, board, at);
+        let anchor = PatternAnchor::default();
+        small.world().entity_mut(board).insert((anchor, at));
+        let plate = Plate::all(&spot(), 1.0)[3];
+        let cover = followed_cover(spot().shape, plate, &followed(at), tone, &|_, _| 0.5);
         for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
             let s = Halftone {
                 sampling,
-                ..spot(ScreenAnchor::Object)
+                anchor: ScreenAnchor::Object,
+                ..spot()
             };
-            let picture = shot(&mut small, s);
+            let picture = shot(&mut small, &ComicStyle::new().with(s));
             assert!(small.ran(ComicsStage::of::<Halftone>()));
-            let cover = followed_cover(
-                s.shape,
-                Plate::all(&s, 1.0)[3],
-                &followed(at),
-                tone,
-                &|_, _| 0.5,
-            );
             let mut inked = 0;
             for (x, y) in inner() {
                 let want = 1.0 - cover([f64::from(x) + 0.5, f64::from(y) + 0.5]);
                 let found = linear(&picture, x, y)[0];
-                let apart = (found - want).abs();
-                assert!(
-                    apart < 0.012,
-                    "{at:?}, {sampling:?}, ({x}, {y}): {found}, {want}"
-                );
+                let what = format!("{at:?}, {sampling:?}, ({x}, {y})");
+                assert!((found - want).abs() < 0.012, "{what}: {found}, {want}");
                 inked += usize::from(want < 0.1);
             }
             assert!(inked > 50, "{inked} of 704 pixels are all ink");
@@ -130,20 +110,17 @@ fn dots_lie_on_their_object() {
 #[test]
 fn a_moved_object_carries_its_dots() {
     let (mut small, board) = board();
-    small
-        .world()
-        .entity_mut(board)
-        .insert(PatternAnchor::default());
     let mut differences = |anchor| {
-        place(&mut small, board, Transform::from_xyz(0.375, 0.5, 0.0));
-        let before = shot(&mut small, spot(anchor));
-        place(&mut small, board, Transform::from_xyz(3.375, -1.5, 0.0));
-        let after = shot(&mut small, spot(anchor));
-        let apart = |(x, y)| {
+        let [before, after] = [[0.375, 0.5], [3.375, -1.5]].map(|[x, y]| {
+            let at = (PatternAnchor::default(), Transform::from_xyz(x, y, 0.0));
+            small.world().entity_mut(board).insert(at);
+            printed(&mut small, anchor)
+        });
+        let is_apart = |(x, y)| {
             let (from, to) = (before.get_pixel(x, y), after.get_pixel(x + 3, y + 2));
             from.0[0].abs_diff(to.0[0]) > 1
         };
-        inner().filter(|at| apart(*at)).count()
+        inner().filter(|at| is_apart(*at)).count()
     };
     assert_eq!(differences(ScreenAnchor::Object), 0);
     assert!(differences(ScreenAnchor::View) > 100);
@@ -155,29 +132,33 @@ fn a_moved_object_carries_its_dots() {
 fn only_marked_objects_carry_dots() {
     let (mut small, board) = board();
     let at = Transform::from_xyz(2.5, 1.25, 0.0);
-    place(&mut small, board, at);
-    let page = shot(&mut small, spot(ScreenAnchor::View));
-    assert_eq!(shot(&mut small, spot(ScreenAnchor::Object)), page);
-    let figure = small
-        .world()
-        .spawn((at, Visibility::default(), PatternAnchor::default()))
-        .id();
-    small
-        .world()
-        .entity_mut(board)
-        .insert((ChildOf(figure), Transform::IDENTITY));
-    let whole = shot(&mut small, spot(ScreenAnchor::Object));
+    small.world().entity_mut(board).insert(at);
+    let page = printed(&mut small, ScreenAnchor::View);
+    assert_eq!(printed(&mut small, ScreenAnchor::Object), page);
+    let world = small.world();
+    let figure = (at, Visibility::default(), PatternAnchor::default());
+    let part = (ChildOf(world.spawn(figure).id()), Transform::IDENTITY);
+    world.entity_mut(board).insert(part);
+    let whole = printed(&mut small, ScreenAnchor::Object);
     assert_ne!(whole, page);
     // The figure stays, its mesh moves within it: the dots stay.
-    place(&mut small, board, Transform::from_xyz(2.0, -3.0, 0.0));
-    let moved = shot(&mut small, spot(ScreenAnchor::Object));
+    let moved = Transform::from_xyz(2.0, -3.0, 0.0);
+    small.world().entity_mut(board).insert(moved);
+    let moved = printed(&mut small, ScreenAnchor::Object);
     assert!(inner().all(|(x, y)| whole.get_pixel(x, y) == moved.get_pixel(x, y)));
     assert_eq!(small.errors(), 0);
 }
 
-fn scaled(by: f64) -> Similarity {
-    let at = DMat4::IDENTITY;
-    similarity_of(at, [0.0, 0.0, 2.0, 2.0], DVec3::ZERO, by, DQuat::IDENTITY).expect("in front")
+/// Coverages by a screen with cells of 8 pixels on an object of an apparent size.
+fn cover_of_size(shape: ScreenShape, size: f64, tone: f64) -> impl Fn([f64; 2]) -> f64 {
+    let s = Halftone {
+        cell_size: 8.0,
+        ..default()
+    };
+    let (at, viewport) = (DMat4::IDENTITY, [0.0, 0.0, 2.0, 2.0]);
+    let follows = similarity_of(at, viewport, DVec3::ZERO, size, DQuat::IDENTITY);
+    let follows = follows.expect("in front");
+    followed_cover(shape, Plate::all(&s, 1.0)[0], &follows, tone, &|_, _| 0.5)
 }
 
 /// The mean of a flat tone stays at every size, also where two octaves are mixed: as exact as on
@@ -187,29 +168,21 @@ fn scaled(by: f64) -> Similarity {
 fn every_size_has_the_tone() {
     const SIDE: i32 = 160;
     let window = |v: i32| 1.0 - (std::f64::consts::TAU * f64::from(v) / f64::from(SIDE)).cos();
-    for shape in SHAPES
+    let without_grains = SHAPES
         .into_iter()
-        .filter(|shape| *shape != ScreenShape::Stochastic)
-    {
+        .filter(|shape| *shape != ScreenShape::Stochastic);
+    for shape in without_grains {
         for size in [0.72, 0.9, 1.0, 1.31, 1.36, 1.41] {
             for tone in [0.2, 0.5, 0.85] {
-                let s = Halftone {
-                    cell_size: 8.0,
-                    ..default()
-                };
-                let plate = Plate::all(&s, 1.0)[0];
-                let cover = followed_cover(shape, plate, &scaled(size), tone, &|_, _| 0.5);
+                let cover = cover_of_size(shape, size, tone);
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
                     let weight = window(x) * window(y);
                     sum += weight * cover([f64::from(x) + 0.3, f64::from(y) + 0.6]);
                     weights += weight;
                 }
-                let mean = sum / weights;
-                assert!(
-                    (mean - tone).abs() < 0.01,
-                    "{shape:?}, {size}, {tone}: {mean}"
-                );
+                let off = (sum / weights - tone).abs();
+                assert!(off < 0.01, "{shape:?}, {size}, {tone}: {off}");
             }
         }
     }
@@ -220,20 +193,15 @@ fn every_size_has_the_tone() {
 /// pixel wide; what fades changes by 1/120 a frame.
 #[test]
 fn octaves_follow_each_other_without_a_jump() {
-    let s = Halftone {
-        cell_size: 8.0,
-        ..default()
-    };
-    let plate = Plate::all(&s, 1.0)[0];
     for shape in [ScreenShape::Round, ScreenShape::Line] {
-        let mut before: Option<Vec<f64>> = None;
+        let mut before: Option<[f64; 60]> = None;
         for frame in 0..=1024 {
-            let follows = scaled((f64::from(frame) / 512.0 - 1.0).exp2());
-            let cover = followed_cover(shape, plate, &follows, 0.3, &|_, _| 0.5);
-            let places = (0..60).map(|i| (f64::from(i) * 2.4).sin_cos());
-            let found: Vec<f64> = places
-                .map(|(y, x)| cover([1.0 + 40.0 * x, 1.0 + 40.0 * y]))
-                .collect();
+            let size = (f64::from(frame) / 512.0 - 1.0).exp2();
+            let cover = cover_of_size(shape, size, 0.3);
+            let found = std::array::from_fn(|i| {
+                let (y, x) = (i as f64 * 2.4).sin_cos();
+                cover([1.0 + 40.0 * x, 1.0 + 40.0 * y])
+            });
             for (found, before) in found.iter().zip(before.iter().flatten()) {
                 assert!((found - before).abs() < 0.1, "{shape:?}, frame {frame}");
             }

@@ -92,21 +92,17 @@ fn blit(
     };
     let post = target.post_process_write();
     let group = pipeline.create_bind_group(ctx.render_device(), post.source, &cache);
-    let mut pass = ctx
-        .command_encoder()
-        .begin_render_pass(&RenderPassDescriptor {
-            label: Some("blit"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: post.destination,
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations::default(),
-            })],
-            depth_stencil_attachment: None,
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+    let encoder = ctx.command_encoder();
+    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("blit"),
+        color_attachments: &[Some(RenderPassColorAttachment {
+            view: post.destination,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations::default(),
+        })],
+        ..default()
+    });
     pass.set_pipeline(ready);
     pass.set_bind_group(0, &group, &[]);
     pass.draw(0..3, 0..1);

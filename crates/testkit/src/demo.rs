@@ -137,28 +137,28 @@ mod tests {
     #[global_allocator]
     static ALLOCATOR: Counting = Counting;
 
-    /// Command lines of the photo mode and its like, with an argument on each line.
-    const RIGHT: [&str; 5] = [
-        "--out\nphoto.png",
-        "--size\n480x360",
-        "--size\n4096x16\n--out\nfolder/photo.png",
-        "--out\na.png\n--size\n960x540",
-        "--help",
-    ];
+    const DEMO: Demo = Demo {
+        title: "Photo mode",
+        keys: "",
+        size: UVec2::new(480, 360),
+        frames: 4,
+    };
 
     /// Every command line is read, or refused with a message.
     #[test]
     fn parsing_a_command_line_never_panics() {
-        let demo = Demo {
-            title: "Photo mode",
-            keys: "",
-            size: UVec2::new(480, 360),
-            frames: 4,
-        };
+        // Command lines of the photo mode and its like, with an argument on each line.
+        let right = [
+            "--out\nphoto.png",
+            "--size\n480x360",
+            "--size\n4096x16\n--out\nfolder/photo.png",
+            "--out\na.png\n--size\n960x540",
+            "--help",
+        ];
         check_command_lines(
             4,
-            &RIGHT,
-            |given| demo.arguments(given.map(OsString::from)),
+            &right,
+            |given| DEMO.arguments(given.map(OsString::from)),
             |(size, _)| assert!(size.min_element() >= 16 && size.max_element() <= 4096),
         );
     }
@@ -168,18 +168,12 @@ mod tests {
     #[test]
     fn arguments_may_be_no_text() {
         use std::os::unix::ffi::OsStringExt;
-        let demo = Demo {
-            title: "Photo mode",
-            keys: "",
-            size: UVec2::new(480, 360),
-            frames: 4,
-        };
         let odd = || OsString::from_vec(vec![0xff, b'.', b'p', b'n', b'g']);
-        assert!(demo.arguments([odd()].into_iter()).is_err());
+        assert!(DEMO.arguments([odd()].into_iter()).is_err());
         let named = ["--out".into(), odd()];
-        let read = demo.arguments(named.into_iter()).expect("read");
-        assert_eq!(read, Some((demo.size, Some(odd().into()))));
+        let read = DEMO.arguments(named.into_iter()).expect("read");
+        assert_eq!(read, Some((DEMO.size, Some(odd().into()))));
         let sized = ["--size".into(), odd()];
-        assert!(demo.arguments(sized.into_iter()).is_err());
+        assert!(DEMO.arguments(sized.into_iter()).is_err());
     }
 }

@@ -38,17 +38,13 @@ pub fn draw(
     target: &wgpu::TextureView,
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: target,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations::default(),
         })],
-        depth_stencil_attachment: None,
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
+        ..Default::default()
     });
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, group, &[]);

@@ -12,9 +12,8 @@ use bevy_comics::{
 
 use crate::{
     line_work::draw,
-    read_back,
     studio::Studio,
-    work::{FUSED, RESULT, counting, edit_shaders, teapot},
+    work::{FUSED, RESULT, counted, counting, edit_shaders, teapot},
 };
 
 const BOX_STATISTICS: &str = "bevy_comics/effect/box_statistics.wgsl";
@@ -205,29 +204,17 @@ impl Default for PageCounter {
 
 impl PageCounter {
     pub fn count(&mut self, name: &'static str, style: &ComicStyle) -> PageWork {
-        count(&mut self.studio, name, style)
-    }
-}
-
-fn count(studio: &mut Studio, name: &'static str, style: &ComicStyle) -> PageWork {
-    draw(studio, style);
-    let camera = studio.camera;
-    let world = studio.headless.app.world();
-    let is_compiling = world.resource::<ComicsDiagnostics>().is_compiling(camera);
-    assert!(!is_compiling, "the style before {name} is still drawn");
-    let view = world.get::<RenderEntity>(camera).expect("extracted").id();
-    let render_world = studio.headless.app.sub_app(RenderApp).world();
-    let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
-    let pixels = counted.pixels.len() as f64;
-    let (mut texels, mut bytes) = ([0.0f64; 2], 0.0);
-    for p in &counted.pixels {
-        texels[0] += f64::from(p[0]) / pixels;
-        texels[1] = texels[1].max(f64::from(p[0]));
-        bytes += f64::from(p[1]) / pixels;
-    }
-    PageWork {
-        name,
-        texels,
-        bytes,
+        draw(&mut self.studio, style);
+        let (studio, camera) = (&self.studio, self.studio.camera);
+        let world = studio.headless.app.world();
+        let is_compiling = world.resource::<ComicsDiagnostics>().is_compiling(camera);
+        assert!(!is_compiling, "the style before {name} is still drawn");
+        let view = world.get::<RenderEntity>(camera).expect("extracted").id();
+        let (texels, bytes) = counted(studio.headless.app.sub_app(RenderApp).world(), view);
+        PageWork {
+            name,
+            texels,
+            bytes,
+        }
     }
 }

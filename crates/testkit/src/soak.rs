@@ -36,8 +36,8 @@ pub struct Pace {
     /// A frame of this run stands for so many of the long run: 1, 2 or 4, which divide the times of all
     /// changes; or 20, with which fewer sizes and objects come.
     pub frames: u64,
-    /// Frames of the long run until the next look.
-    pub look: u64,
+    /// Frames of the long run until the next style.
+    pub style: u64,
     /// The kinds of the first camera, one for each cycle in turn: 1 for multisampled, plus 2 for HDR.
     pub kinds: &'static [u64],
 }
@@ -45,19 +45,19 @@ pub struct Pace {
 impl Pace {
     pub const LONG: Self = Self {
         frames: 1,
-        look: 20,
+        style: 20,
         kinds: &[0, 1, 2, 3],
     };
-    /// That of a test. The driver compiles shaders again for a look: there are few.
+    /// That of a test. The driver compiles shaders again for a style: there are few.
     pub const SHORT: Self = Self {
         frames: 4,
-        look: 120,
+        style: 120,
         kinds: &[0, 3],
     };
     /// The shortest, with one kind of camera.
     pub const SHORTEST: Self = Self {
         frames: 20,
-        look: 360,
+        style: 360,
         kinds: &[0],
     };
 }
@@ -85,7 +85,7 @@ pub struct Sample {
     pub resources: Vec<(&'static str, usize)>,
     /// Errors of the renderer so far.
     pub errors: usize,
-    /// Whether the first camera wears a look that is drawn.
+    /// Whether the style of the first camera is drawn.
     pub styled: bool,
 }
 
@@ -93,7 +93,7 @@ pub struct Sample {
 #[derive(Clone, Copy, Debug)]
 pub struct Changes {
     pub sizes: bool,
-    /// How many looks follow each other.
+    /// How many styles follow each other.
     pub looks: usize,
     pub cameras: bool,
     pub materials: bool,
@@ -105,37 +105,25 @@ pub struct Changes {
 
 impl Default for Changes {
     fn default() -> Self {
-        Self {
-            sizes: true,
-            looks: presets::STYLES.len(),
-            cameras: true,
-            materials: true,
-            objects: true,
-            files: true,
-            plain: false,
-        }
+        Self::of("")
     }
 }
 
 impl Changes {
     /// Those that a text names, with commas between them, as `sizes,looks=3`; all for an empty one.
     pub fn of(names: &str) -> Self {
-        let has = |name| names.is_empty() || names.split(',').any(|own| own == name);
+        let own = || names.split(',');
+        let has = |name| names.is_empty() || own().any(|own| own == name);
+        let styles = own().find_map(|own| own.strip_prefix("looks=")?.parse().ok());
+        let all = has("looks").then_some(presets::STYLES.len());
         Self {
             sizes: has("sizes"),
-            looks: if has("looks") {
-                presets::STYLES.len()
-            } else {
-                names
-                    .split(',')
-                    .find_map(|own| own.strip_prefix("looks=")?.parse().ok())
-                    .unwrap_or(0)
-            },
+            looks: all.or(styles).unwrap_or(0),
             cameras: has("cameras"),
             materials: has("materials"),
             objects: has("objects"),
             files: has("files"),
-            plain: names.split(',').any(|own| own == "plain"),
+            plain: own().any(|own| own == "plain"),
         }
     }
 }
@@ -145,7 +133,7 @@ pub struct Soak {
     changes: Changes,
     pace: Pace,
     headless: Headless,
-    /// Wears one look after the other.
+    /// Has one style after the other.
     camera: Entity,
     root: Entity,
     visitor: Option<Entity>,
@@ -186,7 +174,7 @@ impl Soak {
         let small = new_target(world, UVec2::new(40, 24), TextureFormat::Rgba8UnormSrgb);
         let second = world.spawn(view(small.into())).id();
         if !changes.plain {
-            // Wears a file that breaks and is mended.
+            // Has the style of a file that breaks and is mended.
             let style = world.resource::<AssetServer>().load::<ComicStyle>(FILE);
             world.entity_mut(second).insert(Comic(style));
         }
@@ -226,11 +214,11 @@ impl Soak {
             let size = if at == CYCLE - 12 { 0 } else { at / 12 };
             self.resize(SIZES[size as usize % SIZES.len()]);
         }
-        if changes.looks > 0 && at.is_multiple_of(self.pace.look) {
-            let look = presets::STYLES[(at / self.pace.look) as usize % changes.looks];
+        if changes.looks > 0 && at.is_multiple_of(self.pace.style) {
+            let preset = presets::STYLES[(at / self.pace.style) as usize % changes.looks];
             let world = self.headless.app.world_mut();
-            look.style()
-                .apply(&mut world.commands().entity(self.camera));
+            let mut commands = world.commands();
+            preset.style().apply(&mut commands.entity(self.camera));
             world.flush();
         }
         match at {
@@ -275,13 +263,9 @@ impl Soak {
 
     /// Samples and range of colours change from cycle to cycle.
     fn set_up_camera(&mut self, kind: u64) {
-        let camera = self.camera;
-        let mut camera = self.headless.app.world_mut().entity_mut(camera);
-        camera.insert(if kind & 1 == 0 {
-            Msaa::Off
-        } else {
-            Msaa::Sample4
-        });
+        let mut camera = self.headless.app.world_mut().entity_mut(self.camera);
+        let samples = [Msaa::Off, Msaa::Sample4];
+        camera.insert(samples[(kind & 1) as usize]);
         if kind & 2 == 0 {
             camera.remove::<Hdr>();
         } else {
@@ -292,12 +276,8 @@ impl Soak {
     fn resize(&mut self, size: UVec2) {
         self.headless.resize(size, 1.0);
         let target = self.headless.render_target();
-        let camera = self.camera;
-        self.headless
-            .app
-            .world_mut()
-            .entity_mut(camera)
-            .insert(target);
+        let world = self.headless.app.world_mut();
+        world.entity_mut(self.camera).insert(target);
     }
 
     /// Another camera with a target of its own.
@@ -319,11 +299,8 @@ impl Soak {
 
     fn write(&self, text: &str) -> io::Result<()> {
         fs::write(self.folder.join(FILE), text)?;
-        self.headless
-            .app
-            .world()
-            .resource::<AssetServer>()
-            .reload(FILE);
+        let world = self.headless.app.world();
+        world.resource::<AssetServer>().reload(FILE);
         Ok(())
     }
 
@@ -332,17 +309,18 @@ impl Soak {
         let report = world.resource::<RenderInstance>().generate_report();
         let resources = report.map_or_else(Vec::new, |report| {
             let hub = report.hub_report();
-            vec![
-                ("buffers", hub.buffers.num_allocated),
-                ("textures", hub.textures.num_allocated),
-                ("texture views", hub.texture_views.num_allocated),
-                ("bind groups", hub.bind_groups.num_allocated),
-                ("bind group layouts", hub.bind_group_layouts.num_allocated),
-                ("samplers", hub.samplers.num_allocated),
-                ("query sets", hub.query_sets.num_allocated),
-                ("render pipelines", hub.render_pipelines.num_allocated),
-                ("compute pipelines", hub.compute_pipelines.num_allocated),
-            ]
+            let counted = [
+                ("buffers", &hub.buffers),
+                ("textures", &hub.textures),
+                ("texture views", &hub.texture_views),
+                ("bind groups", &hub.bind_groups),
+                ("bind group layouts", &hub.bind_group_layouts),
+                ("samplers", &hub.samplers),
+                ("query sets", &hub.query_sets),
+                ("render pipelines", &hub.render_pipelines),
+                ("compute pipelines", &hub.compute_pipelines),
+            ];
+            counted.map(|(kind, of)| (kind, of.num_allocated)).to_vec()
         });
         let world = self.headless.app.world();
         let diagnostics = world.get_resource::<ComicsDiagnostics>();
@@ -386,9 +364,8 @@ fn app(folder: &Path, plain: bool) -> Headless {
 
 /// Three cubes below one root, in the light of the sun.
 fn spawn_scene(world: &mut World) -> Entity {
-    let root = world
-        .spawn((Transform::default(), Visibility::default()))
-        .id();
+    let root = (Transform::default(), Visibility::default());
+    let root = world.spawn(root).id();
     for k in 0..3 {
         let cube = object(world, k);
         world.entity_mut(cube).insert(ChildOf(root));
@@ -421,17 +398,13 @@ fn view(target: RenderTarget) -> impl Bundle {
 /// A cube with a mesh and a material of its own.
 fn object(world: &mut World, k: u64) -> Entity {
     let size = 0.5 + (k % 3) as f32 * 0.3;
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cuboid::from_length(size));
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    let mesh = Mesh3d(meshes.add(Cuboid::from_length(size)));
     let color = Color::hsl((k * 37 % 360) as f32, 0.6, 0.5);
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial::from(color));
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let material = MeshMaterial3d(materials.add(StandardMaterial::from(color)));
     let at = Transform::from_xyz((k % 7) as f32 * 0.5 - 1.5, 0.4, (k % 5) as f32 * 0.4 - 1.0);
-    world
-        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
-        .id()
+    world.spawn((mesh, material, at)).id()
 }
 
 /// Resident memory of this process in KiB, from `/proc`.

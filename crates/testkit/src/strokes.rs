@@ -109,22 +109,3 @@ pub fn largest_tone_step() -> f64 {
     }
     largest
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A field of bars whose mean is known, at periods that do not divide the window.
-    #[test]
-    fn windows_do_not_count_bars() {
-        for period in [4.3, 7.7, 19.0] {
-            let bar = |x: f64| f64::from(u8::from((x / period).rem_euclid(1.0) < 0.3));
-            // Of a pixel: 256 parts of it.
-            let cover = |[x, _]: [f64; 2]| {
-                (0..256).map(|k| bar(x + f64::from(k) / 256.0)).sum::<f64>() / 256.0
-            };
-            let off = window_mean(cover, 160 * 160) - 0.3;
-            assert!(off.abs() < 2e-3, "{period}: {off}");
-        }
-    }
-}

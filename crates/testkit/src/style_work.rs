@@ -1,4 +1,4 @@
-//! Looks in numbers: what the gallery prints and the tests bound.
+//! Styles in numbers: what the gallery prints and the tests bound.
 
 use std::time::Duration;
 
@@ -11,12 +11,13 @@ use bevy_comics::{ComicStyle, Outlines, presets, style::Preset};
 use image::RgbaImage;
 
 use crate::{
+    headless::Headless,
     read_back::{self, DepthImage},
     scenes::BuiltIn,
     studio::Studio,
 };
 
-/// No two looks are closer, in FLIP.
+/// No two styles are closer, in FLIP.
 pub const LEAST_APART: f64 = 0.25;
 /// The largest part of a picture that is white or black, unless the paper is white.
 pub const MOST_CLIPPED: f64 = 0.05;
@@ -27,8 +28,8 @@ pub const MOST_FLICKER: f64 = 1.0;
 /// The largest part of lines that is in fragments.
 pub const MOST_FRAGMENTS: f64 = 0.05;
 
-/// The looks whose paper is white: white is not clipped there.
-pub const WHITE_PAPER: [Preset; 2] = [presets::MANGA_PAGE, presets::HARD_BOILED];
+/// The styles whose paper is white: white is not clipped there.
+const WHITE_PAPER: [Preset; 2] = [presets::MANGA_PAGE, presets::HARD_BOILED];
 
 /// Pieces of line of fewer pixels are fragments.
 const FRAGMENT: usize = 8;
@@ -37,7 +38,7 @@ const LINE: u8 = 8;
 /// The move of what is far away from one frame of the turntable to the next, pixels.
 const STEP: f32 = 0.25;
 
-/// What is measured of a look.
+/// What is measured of a style.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measures {
     /// Parts of the picture: darker than a quarter of the display's range, white, black.
@@ -66,29 +67,25 @@ impl Measures {
         }
     }
 
-    /// The limits that a look does not keep, in words. `unstyled` is measured of the same scenes.
-    pub fn failures(&self, look: Preset, unstyled: &Self) -> Vec<String> {
-        let paper = WHITE_PAPER.contains(&look);
-        let clipped = self.black + if paper { 0.0 } else { self.white };
+    /// The limits that a style does not keep, in words. `unstyled` is measured of the same scenes.
+    pub fn failures(&self, style: Preset, unstyled: &Self) -> Vec<String> {
+        let is_paper = WHITE_PAPER.contains(&style);
+        let clipped = self.black + if is_paper { 0.0 } else { self.white };
         let beyond = self.flicker - unstyled.flicker;
+        let [contrast, fragments] = [self.contrast, self.fragments];
+        let is_broken = fragments > MOST_FRAGMENTS;
         let checks = [
             (clipped > MOST_CLIPPED, format!("clipped {clipped:.3}")),
-            (
-                self.contrast < LEAST_CONTRAST,
-                format!("contrast {:.2}", self.contrast),
-            ),
+            (contrast < LEAST_CONTRAST, format!("contrast {contrast:.2}")),
             (beyond > MOST_FLICKER, format!("flicker {beyond:.2}")),
-            (
-                self.fragments > MOST_FRAGMENTS,
-                format!("fragments {:.3}", self.fragments),
-            ),
+            (is_broken, format!("fragments {fragments:.3}")),
         ];
         let failed = checks.into_iter().filter(|(failed, _)| *failed);
         failed.map(|(_, text)| text).collect()
     }
 }
 
-/// A scene in which looks are measured.
+/// A scene in which styles are measured.
 pub struct LookBench {
     pub studio: Studio,
     /// The plane of each pixel: 0 near, 1 middle, 2 far; `None` for the sky.
@@ -120,10 +117,8 @@ impl LookBench {
     /// that lines that are drawn anew by the clock do not count as flicker.
     pub fn measure(&mut self, style: Option<&ComicStyle>) -> (RgbaImage, Measures) {
         let lined = style.filter(|style| self.count_fragments && style.get::<Outlines>().is_some());
-        let bare = lined.map(|style| {
-            self.studio
-                .shoot(Some(&style.clone().without::<Outlines>()))
-        });
+        let bare = lined.map(|style| style.clone().without::<Outlines>());
+        let bare = bare.map(|style| self.studio.shoot(Some(&style)));
         let picture = self.studio.shoot(style);
         let fragments = bare.map_or(0.0, |bare| fragments(&picture, &bare));
         let frames = self.turn(&picture);
@@ -152,21 +147,17 @@ impl LookBench {
         };
         let camera = self.studio.camera;
         let headless = &mut self.studio.headless;
+        let look_from = |headless: &mut Headless, frame| {
+            let mut camera = headless.app.world_mut().entity_mut(camera);
+            camera.insert(turned(frame));
+        };
         let mut frames = vec![start.clone()];
         for frame in 1..self.frames {
-            headless
-                .app
-                .world_mut()
-                .entity_mut(camera)
-                .insert(turned(frame));
+            look_from(headless, frame);
             headless.step(1);
             frames.push(headless.picture());
         }
-        headless
-            .app
-            .world_mut()
-            .entity_mut(camera)
-            .insert(turned(0));
+        look_from(headless, 0);
         frames
     }
 }
@@ -296,48 +287,4 @@ fn take_piece(open: &mut [bool], width: usize, height: usize, start: usize) -> u
         }
     }
     size
-}
-
-#[cfg(test)]
-mod tests {
-    use image::Rgba;
-
-    use super::*;
-
-    fn picture(rows: &[&str]) -> RgbaImage {
-        RgbaImage::from_fn(rows[0].len() as u32, rows.len() as u32, |x, y| {
-            let ink = rows[y as usize].as_bytes()[x as usize] == b'#';
-            let code = if ink { 0 } else { 255 };
-            Rgba([code, code, code, 255])
-        })
-    }
-
-    #[test]
-    fn short_pieces_are_fragments_and_long_ones_are_not() {
-        let line = picture(&["#########...", "............", "..........##"]);
-        let bare = picture(&["............"; 3]);
-        assert!((fragments(&line, &bare) - 2.0 / 11.0).abs() < 1e-9);
-        // Corners join.
-        let slope = picture(&["#.......", ".#......", "..#####.", ".......#"]);
-        assert_eq!(fragments(&slope, &picture(&["........"; 4])), 0.0);
-        assert_eq!(fragments(&bare, &bare), 0.0);
-    }
-
-    #[test]
-    fn what_jumps_back_flickers_and_what_moves_on_does_not() {
-        let frames = ["#...", ".#..", "..#."].map(|row| picture(&[row]));
-        // Only the second pixel goes to ink and back.
-        assert!((flicker(&frames) - 255.0 / 4.0).abs() < 1e-9);
-        let edge = ["#...", "##..", "###."].map(|row| picture(&[row]));
-        assert_eq!(flicker(&edge), 0.0);
-    }
-
-    #[test]
-    fn contrast_is_that_of_means() {
-        let halves = picture(&["##..##"]);
-        let planes = [Some(0), Some(0), Some(1), Some(1), Some(2), Some(2)];
-        assert!((contrast(&halves, &planes) - 100.0).abs() < 0.1);
-        let mixed = picture(&["#.#.#."]);
-        assert!(contrast(&mixed, &planes) < 1e-9);
-    }
 }

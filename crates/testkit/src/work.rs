@@ -19,7 +19,7 @@ use bevy_comics::{
     Desaturation, IsoLines, Outlines, Sketch, ToneBands,
     depth::RangeSmoothing,
     diagnostics::ComicsStage,
-    lines::{LineBoil, LineResponse, LineWeight},
+    lines::{LineResponse, LineWeight},
 };
 
 use super::{
@@ -71,6 +71,13 @@ pub fn default_comic() -> ComicStyle {
         .with(Contours::default())
 }
 
+/// The default outlines with a change.
+fn outlines(change: impl FnOnce(&mut Outlines)) -> Outlines {
+    let mut outlines = Outlines::default();
+    change(&mut outlines);
+    outlines
+}
+
 /// Outlines that are neither linked to lines nor smooth, and have no budget.
 pub fn along_cracks() -> Outlines {
     Outlines {
@@ -85,168 +92,86 @@ pub fn along_cracks() -> Outlines {
 
 /// Outlines of which one thing differs from the default: what each costs.
 fn factors() -> [(&'static str, Outlines); 9] {
-    let weighted = |weight: LineWeight| Outlines {
-        weight,
-        ..default()
+    let weighted = |change: fn(&mut LineWeight)| {
+        let mut weight = LineWeight::EVEN;
+        change(&mut weight);
+        outlines(|o| o.weight = weight)
     };
-    let even = LineWeight::EVEN;
+    let unlinked = outlines(|o| (o.hysteresis, o.min_length) = (0.0, 1));
+    let by_kind = |w: &mut LineWeight| {
+        (w.outer, w.inner, w.crease, w.object) = (1.5, 0.75, 0.6, 0.75);
+    };
+    let by_light = weighted(|w| (w.shade, w.lit) = (0.6, 0.4));
+    let by_distance = weighted(|w| w.perspective = 0.5);
     [
-        (
-            "outlines, not linked",
-            Outlines {
-                hysteresis: 0.0,
-                min_length: 1,
-                ..default()
-            },
-        ),
-        (
-            "outlines, not smooth",
-            Outlines {
-                smooth: false,
-                ..default()
-            },
-        ),
+        ("outlines, not linked", unlinked),
+        ("outlines, not smooth", outlines(|o| o.smooth = false)),
         (
             "outlines, without a budget",
-            Outlines {
-                ink_budget: 1.0,
-                ..default()
-            },
+            outlines(|o| o.ink_budget = 1.0),
         ),
-        (
-            "outlines, boiling",
-            Outlines {
-                boil: LineBoil {
-                    amplitude: 1.0,
-                    ..default()
-                },
-                ..default()
-            },
-        ),
-        (
-            "outlines, weighted by kind",
-            weighted(LineWeight {
-                outer: 1.5,
-                inner: 0.75,
-                crease: 0.6,
-                object: 0.75,
-                ..even
-            }),
-        ),
-        (
-            "outlines, weighted by light",
-            weighted(LineWeight {
-                shade: 0.6,
-                lit: 0.4,
-                ..even
-            }),
-        ),
-        (
-            "outlines, weighted by distance",
-            weighted(LineWeight {
-                perspective: 0.5,
-                ..even
-            }),
-        ),
+        ("outlines, boiling", outlines(|o| o.boil.amplitude = 1.0)),
+        ("outlines, weighted by kind", weighted(by_kind)),
+        ("outlines, weighted by light", by_light),
+        ("outlines, weighted by distance", by_distance),
         (
             "outlines, drawn with a nib",
-            weighted(LineWeight {
-                nib_roundness: 0.4,
-                ..even
-            }),
+            weighted(|w| w.nib_roundness = 0.4),
         ),
-        (
-            "outlines, tapered",
-            weighted(LineWeight {
-                taper: 12.0,
-                ..even
-            }),
-        ),
+        ("outlines, tapered", weighted(|w| w.taper = 12.0)),
     ]
 }
 
 /// The styles whose work is counted, from none to everything.
 pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
-    let none = ComicStyle::new();
-    let saturation = none.clone().with(Desaturation::default());
-    let comic = default_comic();
-    let outlined = |outlines: Outlines| ComicStyle::new().with(outlines);
-    let fixed = DepthMapping::Fixed {
-        from: 1.0,
-        to: 20.0,
+    let style = ComicStyle::new;
+    let saturation = || style().with(Desaturation::default());
+    let outlined = |outlines: Outlines| style().with(outlines);
+    let wide = |width: f32| outlined(outlines(|o| o.width = width));
+    let mapped = |style: ComicStyle, change: fn(&mut DepthMap)| {
+        let mut map = DepthMap::default();
+        change(&mut map);
+        with_map(style, map)
     };
+    let fixed = mapped(saturation(), |map| {
+        map.mapping = DepthMapping::Fixed {
+            from: 1.0,
+            to: 20.0,
+        };
+    });
+    let of_every_frame = mapped(default_comic(), |map| map.smoothing = None);
+    let percentiles = mapped(default_comic(), |map| {
+        map.smoothing = Some(RangeSmoothing {
+            outliers: 0.005,
+            ..default()
+        });
+    });
+    let wide_cracks = outlined(Outlines {
+        width: 16.0,
+        ..along_cracks()
+    });
+    let everything = default_comic().with(ToneBands::default());
     let mut rungs = vec![
-        ("no style", none.clone()),
-        ("one tint (sepia)", none.clone().with(Colorization::SEPIA)),
-        ("tone bands", none.clone().with(ToneBands::default())),
-        (
-            "desaturation by a fixed range",
-            with_map(
-                saturation.clone(),
-                DepthMap {
-                    mapping: fixed,
-                    ..default()
-                },
-            ),
-        ),
-        ("desaturation", saturation),
-        ("contours", none.clone().with(Contours::default())),
-        ("iso-lines", none.clone().with(IsoLines::default())),
-        ("default comic", comic.clone()),
-        (
-            "default comic, range of every frame",
-            with_map(
-                comic.clone(),
-                DepthMap {
-                    smoothing: None,
-                    ..default()
-                },
-            ),
-        ),
-        (
-            "default comic, percentiles",
-            with_map(
-                comic.clone(),
-                DepthMap {
-                    smoothing: Some(RangeSmoothing {
-                        outliers: 0.005,
-                        ..default()
-                    }),
-                    ..default()
-                },
-            ),
-        ),
+        ("no style", style()),
+        ("one tint (sepia)", style().with(Colorization::SEPIA)),
+        ("tone bands", style().with(ToneBands::default())),
+        ("desaturation by a fixed range", fixed),
+        ("desaturation", saturation()),
+        ("contours", style().with(Contours::default())),
+        ("iso-lines", style().with(IsoLines::default())),
+        ("default comic", default_comic()),
+        ("default comic, range of every frame", of_every_frame),
+        ("default comic, percentiles", percentiles),
         ("silhouettes", outlined(Outlines::SILHOUETTES)),
         ("outlines", outlined(Outlines::default())),
         ("outlines, along cracks", outlined(along_cracks())),
-        (
-            "outlines, along cracks, 16 pixels wide",
-            outlined(Outlines {
-                width: 16.0,
-                ..along_cracks()
-            }),
-        ),
-        (
-            "outlines, 16 pixels wide",
-            outlined(Outlines {
-                width: 16.0,
-                ..default()
-            }),
-        ),
-        (
-            "outlines, 8 pixels wide",
-            outlined(Outlines {
-                width: 8.0,
-                ..default()
-            }),
-        ),
-        ("sketch", none.with(Sketch::default())),
+        ("outlines, along cracks, 16 pixels wide", wide_cracks),
+        ("outlines, 16 pixels wide", wide(16.0)),
+        ("outlines, 8 pixels wide", wide(8.0)),
+        ("sketch", style().with(Sketch::default())),
     ];
     rungs.extend(factors().map(|(name, outlines)| (name, outlined(outlines))));
-    rungs.push((
-        "everything",
-        comic.with(ToneBands::default()).with(Outlines::default()),
-    ));
+    rungs.push(("everything", everything.with(Outlines::default())));
     rungs
 }
 
@@ -264,6 +189,9 @@ fn texels(line: &str) -> Option<[u32; 2]> {
     ];
     let size = sizes.iter().find(|(name, _)| line.contains(name));
     let size = size.map_or(4, |(_, size)| *size);
+    if line.contains("textureSampleLevel(") {
+        return Some([4, size]);
+    }
     let loads = [
         "textureLoad(",
         "return crack_words[",
@@ -271,13 +199,8 @@ fn texels(line: &str) -> Option<[u32; 2]> {
         "planes[column_word(",
         "planes[row_word(",
     ];
-    if line.contains("textureSampleLevel(") {
-        return Some([4, size]);
-    }
-    loads
-        .iter()
-        .any(|load| line.contains(load))
-        .then_some([1, size])
+    let is_load = loads.iter().any(|load| line.contains(load));
+    is_load.then_some([1, size])
 }
 
 /// The file of the fused pass.
@@ -352,15 +275,12 @@ pub(crate) fn edit_shaders(
         let Some(shader) = shaders.get(id) else {
             continue;
         };
-        let Source::Wgsl(text) = &shader.source else {
-            continue;
-        };
-        let Some(file) = files.iter().find(|file| shader.path.ends_with(**file)) else {
-            continue;
-        };
-        let shader = Shader::from_wgsl(edit(file, text), shader.path.clone());
-        let _ = shaders.insert(id, shader);
-        changed.push(*file);
+        let file = files.iter().find(|file| shader.path.ends_with(**file));
+        if let (Source::Wgsl(text), Some(file)) = (&shader.source, file) {
+            let shader = Shader::from_wgsl(edit(file, text), shader.path.clone());
+            let _ = shaders.insert(id, shader);
+            changed.push(*file);
+        }
     }
     world.insert_resource(Counter { _module: module });
     changed.sort_unstable();
@@ -379,13 +299,8 @@ pub(crate) fn teapot() -> Studio {
     // Where no tile is drawn over the picture, nothing is fetched.
     let plugins = (ComicsPlugin, BeforeStylize::Clear);
     let mut studio = Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, plugins);
-    let camera = studio.camera;
-    studio
-        .headless
-        .app
-        .world_mut()
-        .entity_mut(camera)
-        .insert(Hdr);
+    let world = studio.headless.app.world_mut();
+    world.entity_mut(studio.camera).insert(Hdr);
     studio.headless.step(2);
     studio
 }
@@ -420,6 +335,20 @@ impl WorkCounter {
     }
 }
 
+/// What a pass has written in place of the colours of a view: mean and maximum of the texels, and the mean of
+/// the bytes.
+pub(crate) fn counted(render_world: &World, view: Entity) -> ([f64; 2], f64) {
+    let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
+    let pixels = counted.pixels.len() as f64;
+    let (mut texels, mut bytes) = ([0.0f64; 2], 0.0);
+    for p in &counted.pixels {
+        texels[0] += f64::from(p[0]) / pixels;
+        texels[1] = texels[1].max(f64::from(p[0]));
+        bytes += f64::from(p[1]) / pixels;
+    }
+    (texels, bytes)
+}
+
 /// Counts the work of a style but for that of its lines.
 pub fn count_without_lines(name: &'static str, style: &ComicStyle) -> Work {
     count_fused(name, style).0
@@ -447,25 +376,17 @@ fn count_fused(name: &'static str, style: &ComicStyle) -> (Work, Studio) {
         .resource::<PipelineCache>()
         .pipelines()
         .filter_map(|pipeline| match &pipeline.descriptor {
-            PipelineDescriptor::RenderPipelineDescriptor(d)
-                if d.label.as_deref() == Some("comics_stylize") =>
-            {
-                Some(d.layout[0].entries.len())
-            }
+            PipelineDescriptor::RenderPipelineDescriptor(d) => Some(d),
             _ => None,
         })
+        .filter(|d| d.label.as_deref() == Some("comics_stylize"))
         .last()
-        .unwrap_or(0);
-    let (mut fetches, mut bytes) = ([0.0f64; 2], 0.0);
-    if stages.ran(ComicsStage::Stylize) {
-        let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
-        let pixels = counted.pixels.len() as f64;
-        for p in &counted.pixels {
-            fetches[0] += f64::from(p[0]) / pixels;
-            fetches[1] = fetches[1].max(f64::from(p[0]));
-            bytes += f64::from(p[1]) / pixels;
-        }
-    }
+        .map_or(0, |d| d.layout[0].entries.len());
+    let (fetches, bytes) = if stages.ran(ComicsStage::Stylize) {
+        counted(render_world, view)
+    } else {
+        default()
+    };
     let work = Work {
         name,
         ran: ran.into_iter().map(ComicsStage::name).collect(),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use bevy::math::{DMat4, DQuat, DVec2, DVec3, DVec4, Vec4Swizzles};
+use bevy::math::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 use bevy_comics::{
     Hatching,
     effect::linear_rgb,
@@ -10,7 +10,7 @@ use bevy_comics::{
 };
 
 use super::{
-    Rgb, color,
+    Rgb,
     edge::line_coverage,
     mix,
     nested::{level_of, mark_of, noise_along, stroke_factor, stroke_start},
@@ -65,27 +65,6 @@ impl Surface {
             normal,
         }
     }
-
-    /// In the frame of an object.
-    pub fn in_frame(self, centre: DVec3, rotation: DQuat) -> Self {
-        let back = rotation.inverse();
-        Self {
-            place: back * (self.place - centre),
-            across: back * self.across,
-            down: back * self.down,
-            normal: back * self.normal,
-        }
-    }
-}
-
-/// How much of the strokes is left where `gaps` are between a surface and its four neighbours, as
-/// fractions of the largest distance of two strokes.
-pub fn strokes_left(calm: f64, gaps: [f64; 4]) -> f64 {
-    let neighbours: f64 = gaps
-        .iter()
-        .map(|gap| 1.0 - smoothstep(0.15, 0.5, *gap))
-        .sum();
-    mix(1.0, smoothstep(0.75, 2.0, neighbours), calm)
 }
 
 /// Hatching at a scale factor, of a drawing.
@@ -96,7 +75,20 @@ pub struct Hatch<'a> {
     pub drawing: u32,
 }
 
-impl Hatch<'_> {
+impl<'a> Hatch<'a> {
+    /// The first drawing, at a scale factor of 1.
+    pub fn new(settings: &'a Hatching) -> Self {
+        Self {
+            settings,
+            scale: 1.0,
+            drawing: 0,
+        }
+    }
+
+    pub fn drawn(self, drawing: u32) -> Self {
+        Self { drawing, ..self }
+    }
+
     fn spacing(&self) -> f64 {
         f64::from(self.settings.spacing) * self.scale
     }
@@ -244,12 +236,5 @@ impl Hatch<'_> {
             };
             mix(linear[i], mix(ground, ink[i], cover), f64::from(s.opacity))
         })
-    }
-
-    /// The whole effect on a surface of the page.
-    pub fn page(&self, linear: Rgb, place: DVec2) -> Rgb {
-        let tone = self.tone(color::lightness(linear)) * f64::from(self.settings.at_far);
-        let cover = self.cover(&Surface::page(place, self.spacing()), tone);
-        self.hatched(linear, tone, cover)
     }
 }

@@ -20,20 +20,16 @@ pub struct House {
 pub fn house(h: &House, random: &mut Random) -> Shape {
     let mut s = Shape::default();
     let (x, y, z) = (h.size.x / 2.0, h.size.y, h.size.z / 2.0);
-    s.cuboid(Vec3::new(-x, -0.5, -z), Vec3::new(x, y, z), h.wall);
+    s.cuboid([-x, -0.5, -z], [x, y, z], h.wall);
     s.cuboid(
-        Vec3::new(-x - 0.06, -0.5, -z - 0.06),
-        Vec3::new(x + 0.06, 0.45, z + 0.06),
-        rgb(0x8c8377),
+        [-x - 0.06, -0.5, -z - 0.06],
+        [x + 0.06, 0.45, z + 0.06],
+        0x8c8377,
     );
     let ridge = y + h.roof;
     for front in [1.0, -1.0] {
-        let gable = [
-            Vec3::new(-x * front, y, z * front),
-            Vec3::new(x * front, y, z * front),
-            Vec3::new(0.0, ridge, z * front),
-        ];
-        s.polygon(&gable, h.wall);
+        let gable = [[-x * front, y], [x * front, y], [0.0, ridge]];
+        s.polygon(&gable.map(|[x, y]| Vec3::new(x, y, z * front)), h.wall);
     }
     // The roof overhangs the walls on every side.
     let (ex, ez, thick) = (x + 0.4, z + 0.45, 0.2);
@@ -41,58 +37,28 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
     for side in [1.0f32, -1.0] {
         let eave = |z: f32, up: f32| Vec3::new(side * ex, y - drop + up, z);
         let top = |z: f32, up: f32| Vec3::new(0.0, ridge + up, z);
-        let quad = |s: &mut Shape, mut q: [Vec3; 4], c| {
+        // Corners in front and behind: of the eave, below and above; of the ridge, below and above.
+        let corners = |z: f32| [eave(z, 0.0), eave(z, thick), top(z, 0.0), top(z, thick)];
+        let (f, b) = (corners(ez), corners(-ez));
+        let beam = rgb(0x6d4c33);
+        for (mut quad, color) in [
+            ([f[1], b[1], b[3], f[3]], h.tiles),
+            ([f[2], b[2], b[0], f[0]], shade(h.tiles, 0.5)),
+            ([f[0], b[0], b[1], f[1]], shade(h.tiles, 0.8)),
+            ([f[0], f[1], f[3], f[2]], beam),
+            ([b[2], b[3], b[1], b[0]], beam),
+        ] {
             if side < 0.0 {
-                q.reverse();
+                quad.reverse();
             }
-            s.polygon(&q, c);
-        };
-        quad(
-            &mut s,
-            [
-                eave(ez, thick),
-                eave(-ez, thick),
-                top(-ez, thick),
-                top(ez, thick),
-            ],
-            h.tiles,
-        );
-        quad(
-            &mut s,
-            [top(ez, 0.0), top(-ez, 0.0), eave(-ez, 0.0), eave(ez, 0.0)],
-            shade(h.tiles, 0.5),
-        );
-        quad(
-            &mut s,
-            [
-                eave(ez, 0.0),
-                eave(-ez, 0.0),
-                eave(-ez, thick),
-                eave(ez, thick),
-            ],
-            shade(h.tiles, 0.8),
-        );
-        quad(
-            &mut s,
-            [eave(ez, 0.0), eave(ez, thick), top(ez, thick), top(ez, 0.0)],
-            rgb(0x6d4c33),
-        );
-        quad(
-            &mut s,
-            [
-                top(-ez, 0.0),
-                top(-ez, thick),
-                eave(-ez, thick),
-                eave(-ez, 0.0),
-            ],
-            rgb(0x6d4c33),
-        );
+            s.polygon(&quad, color);
+        }
     }
     let cx = x * 0.45;
     s.cuboid(
-        Vec3::new(cx - 0.3, y, -z * 0.4 - 0.3),
-        Vec3::new(cx + 0.3, ridge + 0.7, -z * 0.4 + 0.3),
-        rgb(0xa0563f),
+        [cx - 0.3, y, -z * 0.4 - 0.3],
+        [cx + 0.3, ridge + 0.7, -z * 0.4 + 0.3],
+        0xa0563f,
     );
     // Door, windows and shutters, each a few centimetres in front of the wall.
     let frame = rgb(0xf3ead6);
@@ -101,11 +67,7 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
     for front in [1.0f32, -1.0] {
         let face = |s: &mut Shape, cx: f32, low: f32, high: f32, half: f32, out: f32, c| {
             let (a, b) = (front * z, front * (z + out));
-            s.cuboid(
-                Vec3::new(cx - half, low, a.min(b)),
-                Vec3::new(cx + half, high, a.max(b)),
-                c,
-            );
+            s.cuboid([cx - half, low, a.min(b)], [cx + half, high, a.max(b)], c);
         };
         face(&mut s, 0.0, 0.0, 2.25, 0.62, 0.06, frame);
         face(&mut s, 0.0, 0.0, 2.15, 0.5, 0.1, shutter);
@@ -123,18 +85,15 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
     }
     for side in [1.0f32, -1.0] {
         for wz in [-z * 0.5, z * 0.5] {
-            let (a, b) = (side * x, side * (x + 0.06));
-            s.cuboid(
-                Vec3::new(a.min(b), 1.2, wz - 0.45),
-                Vec3::new(a.max(b), 2.3, wz + 0.45),
-                frame,
-            );
-            let b = side * (x + 0.09);
-            s.cuboid(
-                Vec3::new(a.min(b), 1.3, wz - 0.35),
-                Vec3::new(a.max(b), 2.2, wz + 0.35),
-                glass,
-            );
+            let a = side * x;
+            for (out, [low, high], half, color) in [
+                (0.06, [1.2, 2.3], 0.45, frame),
+                (0.09, [1.3, 2.2], 0.35, glass),
+            ] {
+                let b = side * (x + out);
+                let corners = [[a.min(b), low, wz - half], [a.max(b), high, wz + half]];
+                s.cuboid(corners[0], corners[1], color);
+            }
         }
     }
     s
@@ -150,51 +109,31 @@ pub fn church() -> Shape {
         tiles: rgb(0x5b6a7c),
     };
     let mut s = house(&nave, &mut random);
-    s.cuboid(Vec3::new(-2.2, -0.5, 7.0), Vec3::new(2.2, 14.0, 11.4), wall);
+    s.cuboid([-2.2, -0.5, 7.0], [2.2, 14.0, 11.4], wall);
     for side in [-1.0f32, 1.0] {
         s.cuboid(
-            Vec3::new(side * 0.8 - 0.45, 10.6, 11.4),
-            Vec3::new(side * 0.8 + 0.45, 12.8, 11.5),
-            rgb(0x3b4454),
+            [side * 0.8 - 0.45, 10.6, 11.4],
+            [side * 0.8 + 0.45, 12.8, 11.5],
+            0x3b4454,
         );
     }
-    s.cuboid(
-        Vec3::new(-2.5, 14.0, 6.7),
-        Vec3::new(2.5, 14.5, 11.7),
-        rgb(0xc9bda6),
-    );
-    s.frustum(Vec3::new(0.0, 14.5, 9.2), 8.0, (3.1, 0.0), 4, rgb(0x5b6a7c));
-    s.cuboid(
-        Vec3::new(-0.06, 22.2, 9.14),
-        Vec3::new(0.06, 24.0, 9.26),
-        rgb(0xd9a92f),
-    );
-    s.cuboid(
-        Vec3::new(-0.5, 23.2, 9.14),
-        Vec3::new(0.5, 23.35, 9.26),
-        rgb(0xd9a92f),
-    );
+    s.cuboid([-2.5, 14.0, 6.7], [2.5, 14.5, 11.7], 0xc9bda6);
+    s.frustum([0.0, 14.5, 9.2], 8.0, (3.1, 0.0), 4, 0x5b6a7c);
+    s.cuboid([-0.06, 22.2, 9.14], [0.06, 24.0, 9.26], 0xd9a92f);
+    s.cuboid([-0.5, 23.2, 9.14], [0.5, 23.35, 9.26], 0xd9a92f);
     s
 }
 
 pub fn windmill() -> Shape {
     let mut s = Shape::default();
-    s.frustum(Vec3::ZERO, 11.0, (3.6, 2.3), 12, rgb(0xf0e6d2));
-    s.frustum(Vec3::Y * 11.0, 2.6, (2.7, 0.3), 12, rgb(0x9c3d33));
+    s.frustum(Vec3::ZERO, 11.0, (3.6, 2.3), 12, 0xf0e6d2);
+    s.frustum(Vec3::Y * 11.0, 2.6, (2.7, 0.3), 12, 0x9c3d33);
     let hub = Vec3::new(0.0, 11.4, 3.0);
-    s.blob(hub, Vec3::splat(0.5), 6, |_| rgb(0x5a4030), |_| 0.0);
+    s.ellipsoid(hub, Vec3::splat(0.5), 6, 0x5a4030);
     for k in 0..4 {
         let mut sail = Shape::default();
-        sail.cuboid(
-            Vec3::new(-0.12, 0.0, -0.08),
-            Vec3::new(0.12, 8.5, 0.08),
-            rgb(0x5a4030),
-        );
-        sail.cuboid(
-            Vec3::new(0.12, 1.6, -0.05),
-            Vec3::new(1.5, 8.3, 0.05),
-            rgb(0xe8d9b5),
-        );
+        sail.cuboid([-0.12, 0.0, -0.08], [0.12, 8.5, 0.08], 0x5a4030);
+        sail.cuboid([0.12, 1.6, -0.05], [1.5, 8.3, 0.05], 0xe8d9b5);
         let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * k as f32 + 0.5);
         s.add(&sail, Transform::from_translation(hub).with_rotation(turn));
     }
@@ -207,31 +146,31 @@ pub fn barrel() -> Shape {
     s.frustum(Vec3::ZERO, 0.45, (0.34, 0.42), 16, wood);
     s.frustum(Vec3::Y * 0.45, 0.45, (0.42, 0.34), 16, wood);
     for y in [0.12, 0.68] {
-        s.frustum(Vec3::Y * y, 0.09, (0.405, 0.405), 16, rgb(0x4c4a4d));
+        s.frustum(Vec3::Y * y, 0.09, (0.405, 0.405), 16, 0x4c4a4d);
     }
     s
 }
 
 pub fn well() -> Shape {
     let mut s = Shape::default();
-    s.frustum(Vec3::ZERO, 1.0, (1.25, 1.2), 14, rgb(0xa39a8c));
-    s.frustum(Vec3::Y * 1.0, 0.03, (0.95, 0.95), 14, rgb(0x2b3a48));
+    s.frustum(Vec3::ZERO, 1.0, (1.25, 1.2), 14, 0xa39a8c);
+    s.frustum(Vec3::Y * 1.0, 0.03, (0.95, 0.95), 14, 0x2b3a48);
     for side in [-1.0f32, 1.0] {
         s.cuboid(
-            Vec3::new(side * 1.05 - 0.1, 0.9, -0.1),
-            Vec3::new(side * 1.05 + 0.1, 2.9, 0.1),
-            rgb(0x6d4c33),
+            [side * 1.05 - 0.1, 0.9, -0.1],
+            [side * 1.05 + 0.1, 2.9, 0.1],
+            0x6d4c33,
         );
     }
-    s.frustum(Vec3::Y * 2.8, 1.1, (1.9, 0.0), 4, rgb(0xb5533c));
+    s.frustum(Vec3::Y * 2.8, 1.1, (1.9, 0.0), 4, 0xb5533c);
     s
 }
 
 pub fn lamp() -> Shape {
     let mut s = Shape::default();
-    s.frustum(Vec3::ZERO, 3.2, (0.09, 0.06), 8, rgb(0x32363c));
-    s.frustum(Vec3::Y * 3.2, 0.5, (0.16, 0.26), 6, rgb(0xf5dd8b));
-    s.frustum(Vec3::Y * 3.7, 0.25, (0.34, 0.0), 6, rgb(0x32363c));
+    s.frustum(Vec3::ZERO, 3.2, (0.09, 0.06), 8, 0x32363c);
+    s.frustum(Vec3::Y * 3.2, 0.5, (0.16, 0.26), 6, 0xf5dd8b);
+    s.frustum(Vec3::Y * 3.7, 0.25, (0.34, 0.0), 6, 0x32363c);
     s
 }
 
@@ -241,16 +180,12 @@ pub fn fence(length: f32) -> Shape {
     let posts = (length / 0.45) as u32;
     for i in 0..=posts {
         let x = length * i as f32 / posts as f32;
-        s.cuboid(
-            Vec3::new(x - 0.06, 0.0, -0.03),
-            Vec3::new(x + 0.06, 1.0, 0.03),
-            wood,
-        );
+        s.cuboid([x - 0.06, 0.0, -0.03], [x + 0.06, 1.0, 0.03], wood);
     }
     for y in [0.35, 0.75] {
         s.cuboid(
-            Vec3::new(0.0, y - 0.05, -0.055),
-            Vec3::new(length, y + 0.05, -0.02),
+            [0.0, y - 0.05, -0.055],
+            [length, y + 0.05, -0.02],
             shade(wood, 0.85),
         );
     }
@@ -260,7 +195,7 @@ pub fn fence(length: f32) -> Shape {
 pub fn cart() -> Shape {
     let mut s = Shape::default();
     let wood = rgb(0x8a5a34);
-    s.cuboid(Vec3::new(-0.8, 0.6, -1.3), Vec3::new(0.8, 0.7, 1.3), wood);
+    s.cuboid([-0.8, 0.6, -1.3], [0.8, 0.7, 1.3], wood);
     for (low, high) in [
         (Vec3::new(-0.85, 0.7, -1.3), Vec3::new(-0.75, 1.15, 1.3)),
         (Vec3::new(0.75, 0.7, -1.3), Vec3::new(0.85, 1.15, 1.3)),
@@ -270,13 +205,11 @@ pub fn cart() -> Shape {
     }
     for side in [-1.0f32, 1.0] {
         let mut wheel = Shape::default();
-        wheel.frustum(Vec3::ZERO, 0.1, (0.55, 0.55), 14, rgb(0x5a3d26));
-        wheel.frustum(Vec3::Y * 0.1, 0.05, (0.12, 0.12), 8, rgb(0x32363c));
-        s.add(
-            &wheel,
-            Transform::from_xyz(side * 0.9, 0.55, 0.1)
-                .with_rotation(Quat::from_rotation_z(-side * std::f32::consts::FRAC_PI_2)),
-        );
+        wheel.frustum(Vec3::ZERO, 0.1, (0.55, 0.55), 14, 0x5a3d26);
+        wheel.frustum(Vec3::Y * 0.1, 0.05, (0.12, 0.12), 8, 0x32363c);
+        let turn = Quat::from_rotation_z(-side * std::f32::consts::FRAC_PI_2);
+        let at = Transform::from_xyz(side * 0.9, 0.55, 0.1);
+        s.add(&wheel, at.with_rotation(turn));
     }
     for (x, z, r, hex) in [
         (-0.3, -0.6, 0.34, 0xe07f28),
@@ -284,8 +217,8 @@ pub fn cart() -> Shape {
         (0.0, 0.3, 0.36, 0xeb9a37),
     ] {
         s.blob(
-            Vec3::new(x, 0.7 + r * 0.7, z),
-            Vec3::new(r, r * 0.8, r),
+            [x, 0.7 + r * 0.7, z],
+            [r, r * 0.8, r],
             8,
             |_| rgb(hex),
             |d| 0.04 * (d.x.atan2(d.z) * 7.0).cos(),

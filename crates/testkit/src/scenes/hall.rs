@@ -3,13 +3,15 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use bevy::{light::CascadeShadowConfigBuilder, prelude::*};
+use bevy::prelude::*;
 
 use super::{
-    ScenePart, Stage, Vantage,
+    Stage, Vantage, lamplight,
     noise::Random,
+    shadows_within,
     shape::{Shape, rgb, shade},
     sky::Sky,
+    sunlight,
 };
 
 /// Half the width of the hall, where it ends at the back, and the height of the gallery and the ceiling.
@@ -48,25 +50,16 @@ fn baluster(shape: &mut Shape, foot: Vec3) {
 fn post(shape: &mut Shape, foot: Vec3) {
     let wood = rgb(OAK);
     shape.cuboid(foot - v(0.09, 0.0, 0.09), foot + v(0.09, 1.0, 0.09), wood);
-    shape.cuboid(
-        foot + v(-0.12, 1.0, -0.12),
-        foot + v(0.12, 1.06, 0.12),
-        wood,
-    );
-    shape.blob(
-        foot + Vec3::Y * 1.15,
-        Vec3::splat(0.11),
-        10,
-        |_| wood,
-        |_| 0.0,
-    );
+    let cap = foot + v(-0.12, 1.0, -0.12);
+    shape.cuboid(cap, foot + v(0.12, 1.06, 0.12), wood);
+    shape.ellipsoid(foot + Vec3::Y * 1.15, Vec3::splat(0.11), 10, wood);
 }
 
 /// A handrail between two points at the height of the feet.
 fn handrail(shape: &mut Shape, from: Vec3, to: Vec3) {
     let along = to - from;
     let mut rail = Shape::default();
-    rail.cuboid(v(-0.05, 0.8, 0.0), v(0.05, 0.88, along.length()), rgb(OAK));
+    rail.cuboid([-0.05, 0.8, 0.0], [0.05, 0.88, along.length()], OAK);
     let mut at = Transform::from_translation(from);
     at.rotation = Quat::from_rotation_arc(Vec3::Z, along.normalize());
     // A rail on stairs is upright: its turn is about the horizontal axis across it.
@@ -84,8 +77,8 @@ fn railing(shape: &mut Shape, from: Vec3, to: Vec3) {
     post(shape, to);
 }
 
-/// Stairs from `foot` in a direction, with railings on the sides that are asked for.
-fn stairs(foot: Vec3, ahead: Vec3, half: f32, steps: u32, railed: [bool; 2]) -> [Shape; 2] {
+/// Stairs from `foot` in a direction, and their railings.
+fn stairs(foot: Vec3, ahead: Vec3, half: f32, steps: u32) -> [Shape; 2] {
     let [mut treads, mut rails] = [Shape::default(), Shape::default()];
     let aside = ahead.cross(Vec3::Y);
     let quad_box = |shape: &mut Shape, a: Vec3, b: Vec3, color| {
@@ -108,10 +101,7 @@ fn stairs(foot: Vec3, ahead: Vec3, half: f32, steps: u32, railed: [bool; 2]) -> 
         quad_box(&mut treads, carpet, end, rgb(0xa83236));
     }
     let rise = Vec3::Y * RISE * steps as f32;
-    for (side, is_railed) in [-1.0, 1.0].into_iter().zip(railed) {
-        if !is_railed {
-            continue;
-        }
+    for side in [-1.0, 1.0] {
         let edge = aside * side * (half - 0.08);
         for k in 0..steps {
             for part in [0.25, 0.75] {
@@ -132,7 +122,7 @@ fn floor() -> Shape {
     let mut s = Shape::default();
     let tiles = [rgb(0xf2ead8), rgb(0x3d4650)];
     let size = 0.75;
-    s.cuboid(v(-HALF, -0.3, BACK), v(HALF, -0.01, FRONT), rgb(0x5c5147));
+    s.cuboid([-HALF, -0.3, BACK], [HALF, -0.01, FRONT], 0x5c5147);
     let (columns, rows) = ((2.0 * HALF / size) as i32, ((FRONT - BACK) / size) as i32);
     for j in 0..rows {
         for i in 0..columns {
@@ -172,11 +162,8 @@ fn window_wall(x: f32, places: &[f32], frames: &mut Shape) -> Shape {
         let white = rgb(0xf7f2e6);
         let middle = x + 0.5 * thick * x.signum();
         let mut bar = |y: [f32; 2], z: [f32; 2]| {
-            frames.cuboid(
-                v(middle - 0.04, y[0], z[0]),
-                v(middle + 0.04, y[1], z[1]),
-                white,
-            );
+            let high = v(middle + 0.04, y[1], z[1]);
+            frames.cuboid([middle - 0.04, y[0], z[0]], high, white);
         };
         for z in [-half + 0.04, 0.0, half - 0.04] {
             bar([sill, spring + 0.4], [at + z - 0.04, at + z + 0.04]);
@@ -195,81 +182,57 @@ fn window_wall(x: f32, places: &[f32], frames: &mut Shape) -> Shape {
 fn walls(frames: &mut Shape) -> Shape {
     let mut s = Shape::default();
     let color = rgb(WALL);
-    s.cuboid(v(-HALF, 0.0, BACK - 0.4), v(HALF, CEILING, BACK), color);
-    s.cuboid(v(HALF, 0.0, BACK), v(HALF + 0.4, CEILING, FRONT), color);
+    s.cuboid([-HALF, 0.0, BACK - 0.4], [HALF, CEILING, BACK], color);
+    s.cuboid([HALF, 0.0, BACK], [HALF + 0.4, CEILING, FRONT], color);
     s.cuboid(
-        v(-HALF - 0.4, CEILING, BACK - 0.4),
-        v(HALF + 0.4, CEILING + 0.3, FRONT),
-        rgb(0xf4ecdb),
+        [-HALF - 0.4, CEILING, BACK - 0.4],
+        [HALF + 0.4, CEILING + 0.3, FRONT],
+        0xf4ecdb,
     );
     // Panels of wood below, and a cornice above.
     let wood = shade(rgb(OAK), 1.15);
-    s.cuboid(v(-HALF, 0.0, BACK), v(HALF, 1.05, BACK + 0.06), wood);
-    s.cuboid(v(HALF - 0.06, 0.0, BACK), v(HALF, 1.05, FRONT), wood);
-    for (low, high) in [
-        (v(-HALF, CEILING - 0.3, BACK), v(HALF, CEILING, BACK + 0.2)),
-        (v(HALF - 0.2, CEILING - 0.3, BACK), v(HALF, CEILING, FRONT)),
-        (
-            v(-HALF, CEILING - 0.3, BACK),
-            v(-HALF + 0.2, CEILING, FRONT),
-        ),
+    s.cuboid([-HALF, 0.0, BACK], [HALF, 1.05, BACK + 0.06], wood);
+    s.cuboid([HALF - 0.06, 0.0, BACK], [HALF, 1.05, FRONT], wood);
+    for ([left, right], front) in [
+        ([-HALF, HALF], BACK + 0.2),
+        ([HALF - 0.2, HALF], FRONT),
+        ([-HALF, -HALF + 0.2], FRONT),
     ] {
-        s.cuboid(low, high, rgb(0xf7f2e6));
+        let low = v(left, CEILING - 0.3, BACK);
+        s.cuboid(low, [right, CEILING, front], 0xf7f2e6);
     }
     for x in [-4.3, 4.3] {
         door(frames, x, 0.0);
         door(frames, x, GALLERY);
     }
-    let pictures: [(f32, f32, u32); 3] = [
-        (-2.0, 1.1, 0x2f5f72),
+    for (z, half, hex) in [
+        (-2.0f32, 1.1f32, 0x2f5f72),
         (1.2, 0.8, 0x9c4a35),
         (4.0, 1.0, 0x4e6b3a),
-    ];
-    for (z, half, hex) in pictures {
-        let x = HALF - 0.05;
-        frames.cuboid(
-            v(x - 0.03, 1.6, z - half),
-            v(x + 0.05, 2.8, z + half),
-            rgb(0xc79a3c),
-        );
-        frames.cuboid(
-            v(x - 0.05, 1.7, z - half + 0.1),
-            v(x, 2.7, z + half - 0.1),
-            rgb(hex),
-        );
-        frames.cuboid(
-            v(x - 0.06, 1.7, z - half + 0.1),
-            v(x, 2.05, z + half - 0.1),
-            shade(rgb(hex), 0.5),
-        );
+    ] {
+        let (x, left, right) = (HALF - 0.05, z - half, z + half);
+        frames.cuboid([x - 0.03, 1.6, left], [x + 0.05, 2.8, right], 0xc79a3c);
+        let (left, right, dark) = (left + 0.1, right - 0.1, shade(rgb(hex), 0.5));
+        frames.cuboid([x - 0.05, 1.7, left], [x, 2.7, right], hex);
+        frames.cuboid([x - 0.06, 1.7, left], [x, 2.05, right], dark);
     }
     s
 }
 
 fn door(frames: &mut Shape, x: f32, y: f32) {
     let wood = rgb(0x5f3620);
-    frames.cuboid(
-        v(x - 0.62, y, BACK),
-        v(x + 0.62, y + 2.3, BACK + 0.1),
-        rgb(0xf7f2e6),
-    );
-    frames.cuboid(v(x - 0.5, y, BACK), v(x + 0.5, y + 2.18, BACK + 0.13), wood);
+    let frame = v(x + 0.62, y + 2.3, BACK + 0.1);
+    frames.cuboid([x - 0.62, y, BACK], frame, 0xf7f2e6);
+    frames.cuboid([x - 0.5, y, BACK], [x + 0.5, y + 2.18, BACK + 0.13], wood);
     for row in [0.2, 1.2] {
         for column in [-0.4, 0.06] {
-            frames.cuboid(
-                v(x + column, y + row, BACK + 0.1),
-                v(x + column + 0.34, y + row + 0.85, BACK + 0.16),
-                shade(wood, 1.3),
-            );
+            let low = v(x + column, y + row, BACK + 0.1);
+            let high = [x + column + 0.34, y + row + 0.85, BACK + 0.16];
+            frames.cuboid(low, high, shade(wood, 1.3));
         }
     }
-    frames.blob(
-        v(x + 0.42, y + 1.05, BACK + 0.2),
-        Vec3::splat(0.045),
-        8,
-        |_| rgb(0xd9a92f),
-        |_| 0.0,
-    );
+    let knob = v(x + 0.42, y + 1.05, BACK + 0.2);
+    frames.ellipsoid(knob, Vec3::splat(0.045), 8, 0xd9a92f);
 }
 
 /// The gallery along the back and the right, and what bears it.
@@ -278,51 +241,32 @@ fn gallery(rails: &mut Shape) -> Shape {
     let edge = rgb(0xf1e7d3);
     let deep = 1.7;
     let (inner, front) = (HALF - deep, BACK + deep);
-    s.cuboid(v(-HALF, GALLERY - 0.3, BACK), v(HALF, GALLERY, front), edge);
-    s.cuboid(v(inner, GALLERY - 0.3, front), v(HALF, GALLERY, 4.0), edge);
-    s.cuboid(
-        v(-HALF, GALLERY - 0.3, front),
-        v(-inner, GALLERY, 0.0),
-        edge,
-    );
+    s.cuboid([-HALF, GALLERY - 0.3, BACK], [HALF, GALLERY, front], edge);
+    s.cuboid([inner, GALLERY - 0.3, front], [HALF, GALLERY, 4.0], edge);
+    s.cuboid([-HALF, GALLERY - 0.3, front], [-inner, GALLERY, 0.0], edge);
     let mut column = |x: f32, z: f32| {
-        s.cuboid(
-            v(x - 0.28, 0.0, z - 0.28),
-            v(x + 0.28, 0.25, z + 0.28),
-            edge,
-        );
-        s.frustum(v(x, 0.25, z), 2.5, (0.2, 0.16), 20, edge);
-        s.frustum(v(x, 2.75, z), 0.2, (0.16, 0.27), 20, edge);
-        s.cuboid(
-            v(x - 0.29, 2.95, z - 0.29),
-            v(x + 0.29, GALLERY - 0.3, z + 0.29),
-            edge,
-        );
+        s.cuboid([x - 0.28, 0.0, z - 0.28], [x + 0.28, 0.25, z + 0.28], edge);
+        s.frustum([x, 0.25, z], 2.5, (0.2, 0.16), 20, edge);
+        s.frustum([x, 2.75, z], 0.2, (0.16, 0.27), 20, edge);
+        let top = v(x + 0.29, GALLERY - 0.3, z + 0.29);
+        s.cuboid([x - 0.29, 2.95, z - 0.29], top, edge);
     };
     for z in [front - 0.3, 0.4, 3.6] {
         column(inner + 0.35, z);
     }
     column(-inner - 0.35, front - 0.3);
     column(-inner - 0.35, -0.4);
-    let up = |x: f32, z: f32| v(x, GALLERY, z);
-    railing(rails, up(inner + 0.08, front - 0.08), up(inner + 0.08, 3.9));
-    railing(
-        rails,
-        up(-inner - 0.08, front - 0.08),
-        up(-inner - 0.08, -0.1),
-    );
-    // Between the two upper flights.
-    railing(rails, up(-1.4, front - 0.08), up(1.4, front - 0.08));
-    railing(
-        rails,
-        up(3.05, front - 0.08),
-        up(inner + 0.08, front - 0.08),
-    );
-    railing(
-        rails,
-        up(-inner - 0.08, front - 0.08),
-        up(-3.05, front - 0.08),
-    );
+    let (side, rail) = (inner + 0.08, front - 0.08);
+    // Along the sides, between the two upper flights, and beside them.
+    for ([x0, z0], [x1, z1]) in [
+        ([side, rail], [side, 3.9]),
+        ([-inner - 0.08, rail], [-inner - 0.08, -0.1]),
+        ([-1.4, rail], [1.4, rail]),
+        ([3.05, rail], [side, rail]),
+        ([-inner - 0.08, rail], [-3.05, rail]),
+    ] {
+        railing(rails, v(x0, GALLERY, z0), v(x1, GALLERY, z1));
+    }
     s
 }
 
@@ -331,7 +275,7 @@ fn chandelier() -> [Shape; 2] {
     let gold = rgb(0xc79a3c);
     let middle = v(0.0, 4.7, 1.2);
     brass.frustum(middle, CEILING - middle.y, (0.02, 0.02), 8, gold);
-    brass.blob(middle, v(0.16, 0.26, 0.16), 12, |_| gold, |_| 0.0);
+    brass.ellipsoid(middle, [0.16, 0.26, 0.16], 12, gold);
     for k in 0..8 {
         let angle = TAU * k as f32 / 8.0;
         let outwards = v(angle.cos(), 0.0, angle.sin());
@@ -340,22 +284,12 @@ fn chandelier() -> [Shape; 2] {
                 let t = piece as f32 / 6.0;
                 middle + outwards * 0.9 * t + Vec3::Y * (0.45 * t * t - 0.3 * (PI * t).sin())
             };
-            let (a, b) = (place(piece), place(piece + 1));
-            let mut arm = Shape::default();
-            arm.frustum(Vec3::ZERO, (b - a).length(), (0.02, 0.02), 8, gold);
-            let turn = Quat::from_rotation_arc(Vec3::Y, (b - a).normalize());
-            brass.add(&arm, Transform::from_translation(a).with_rotation(turn));
+            brass.rod(place(piece), place(piece + 1), 0.02, 8, gold);
         }
         let cup = middle + outwards * 0.9 + Vec3::Y * 0.45;
         brass.frustum(cup, 0.05, (0.04, 0.09), 10, gold);
-        brass.frustum(cup + Vec3::Y * 0.05, 0.2, (0.03, 0.03), 8, rgb(0xf7f2e6));
-        flames.blob(
-            cup + Vec3::Y * 0.32,
-            v(0.035, 0.075, 0.035),
-            8,
-            |_| rgb(0xffdf8f),
-            |_| 0.0,
-        );
+        brass.frustum(cup + Vec3::Y * 0.05, 0.2, (0.03, 0.03), 8, 0xf7f2e6);
+        flames.ellipsoid(cup + Vec3::Y * 0.32, [0.035, 0.075, 0.035], 8, 0xffdf8f);
     }
     [brass, flames]
 }
@@ -363,8 +297,8 @@ fn chandelier() -> [Shape; 2] {
 /// A palm in a pot, a chest and a clock.
 fn furniture(random: &mut Random) -> Vec<Shape> {
     let mut pot = Shape::default();
-    pot.frustum(v(-4.6, 0.0, 3.4), 0.7, (0.28, 0.42), 20, rgb(0x2f6f73));
-    pot.frustum(v(-4.6, 0.7, 3.4), 0.06, (0.46, 0.46), 20, rgb(0x2f6f73));
+    pot.frustum([-4.6, 0.0, 3.4], 0.7, (0.28, 0.42), 20, 0x2f6f73);
+    pot.frustum([-4.6, 0.7, 3.4], 0.06, (0.46, 0.46), 20, 0x2f6f73);
     for k in 0..13 {
         let angle = 2.4 * k as f32;
         let outwards = v(angle.cos(), 0.0, angle.sin());
@@ -377,12 +311,8 @@ fn furniture(random: &mut Random) -> Vec<Shape> {
         for piece in 0..5 {
             let [a, b] = [piece, piece + 1].map(|p| p as f32 / 5.0);
             let wide = |t: f32| across * (PI * (0.15 + 0.85 * t)).sin();
-            let quad = [
-                place(a) - wide(a),
-                place(a) + wide(a),
-                place(b) + wide(b),
-                place(b) - wide(b),
-            ];
+            let [p, q] = [place(a), place(b)];
+            let quad = [p - wide(a), p + wide(a), q + wide(b), q - wide(b)];
             let mut below = quad;
             below.reverse();
             pot.polygon(&quad, green);
@@ -391,70 +321,38 @@ fn furniture(random: &mut Random) -> Vec<Shape> {
     }
     let mut chest = Shape::default();
     let wood = rgb(0x6b3f26);
-    chest.cuboid(v(4.9, 0.15, 0.6), v(5.9, 0.95, 2.4), wood);
-    chest.cuboid(v(4.8, 0.95, 0.5), v(5.94, 1.02, 2.5), shade(wood, 1.4));
+    chest.cuboid([4.9, 0.15, 0.6], [5.9, 0.95, 2.4], wood);
+    chest.cuboid([4.8, 0.95, 0.5], [5.94, 1.02, 2.5], shade(wood, 1.4));
     for z in [0.7, 1.55] {
         for y in [0.25, 0.6] {
-            chest.cuboid(
-                v(4.86, y, z),
-                v(4.92, y + 0.28, z + 0.75),
-                shade(wood, 1.25),
-            );
+            chest.cuboid([4.86, y, z], [4.92, y + 0.28, z + 0.75], shade(wood, 1.25));
         }
     }
-    chest.frustum(v(5.4, 1.02, 1.2), 0.3, (0.1, 0.18), 16, rgb(0x3c5c9a));
-    chest.frustum(v(5.4, 1.32, 1.2), 0.2, (0.18, 0.08), 16, rgb(0x3c5c9a));
+    chest.frustum([5.4, 1.02, 1.2], 0.3, (0.1, 0.18), 16, 0x3c5c9a);
+    chest.frustum([5.4, 1.32, 1.2], 0.2, (0.18, 0.08), 16, 0x3c5c9a);
     let mut clock = Shape::default();
     let at = v(-1.9, 0.0, BACK + 0.3);
     clock.cuboid(at + v(-0.3, 0.0, -0.25), at + v(0.3, 0.5, 0.2), wood);
     clock.cuboid(at + v(-0.22, 0.5, -0.2), at + v(0.22, 1.6, 0.12), wood);
     clock.cuboid(at + v(-0.3, 1.6, -0.25), at + v(0.3, 2.2, 0.2), wood);
     let mut face = Shape::default();
-    face.frustum(Vec3::ZERO, 0.04, (0.22, 0.22), 28, rgb(0xf7f2e6));
+    face.frustum(Vec3::ZERO, 0.04, (0.22, 0.22), 28, 0xf7f2e6);
     let front = Transform::from_translation(at + v(0.0, 1.9, 0.2))
         .with_rotation(Quat::from_rotation_x(FRAC_PI_2));
     clock.add(&face, front);
-    clock.cuboid(
-        at + v(-0.015, 1.9, 0.22),
-        at + v(0.015, 2.07, 0.26),
-        rgb(0x20242b),
-    );
+    let hand = at + v(-0.015, 1.9, 0.22);
+    clock.cuboid(hand, at + v(0.015, 2.07, 0.26), 0x20242b);
     vec![pot, chest, clock]
 }
 
 fn spawn_lights(stage: &mut Stage, sun: Vec3) {
-    stage.commands.spawn((
-        ScenePart,
-        DirectionalLight {
-            illuminance: 9000.0,
-            color: Color::srgb(1.0, 0.92, 0.78),
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
-        CascadeShadowConfigBuilder {
-            num_cascades: 1,
-            maximum_distance: 30.0,
-            ..default()
-        }
-        .build(),
-    ));
-    stage.commands.spawn((
-        ScenePart,
-        PointLight {
-            intensity: 420_000.0,
-            color: Color::srgb(1.0, 0.85, 0.6),
-            range: 20.0,
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_xyz(0.0, 5.1, 1.2),
-    ));
-    stage.commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.75, 0.83, 1.0),
-        brightness: 700.0,
-        ..default()
-    });
+    let shadows = shadows_within(30.0);
+    let light = sunlight(sun, 9000.0, [1.0, 0.92, 0.78], shadows);
+    stage.commands.spawn(light);
+    let warm = Color::srgb(1.0, 0.85, 0.6);
+    let light = lamplight(v(0.0, 5.1, 1.2), 420_000.0, warm, 20.0, true);
+    stage.commands.spawn(light);
+    stage.ambient([0.75, 0.83, 1.0], 700.0);
 }
 
 pub fn spawn(stage: &mut Stage) -> Vantage {
@@ -470,30 +368,23 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     ];
     // A broad flight to the landing, and two from there to the gallery.
     let landing = RISE * STEPS[0] as f32;
-    let start = v(
-        0.0,
-        0.0,
-        BACK + 1.7 + FLIGHT + 0.3 + TREAD * STEPS[0] as f32,
-    );
-    let [treads, more] = stairs(start, -Vec3::Z, 1.4, STEPS[0], [true, true]);
+    let front = BACK + 1.7 + FLIGHT + 0.3 + TREAD * STEPS[0] as f32;
+    let start = v(0.0, 0.0, front);
+    let [treads, more] = stairs(start, -Vec3::Z, 1.4, STEPS[0]);
     shapes.push(treads);
     rails.add(&more, Transform::IDENTITY);
     let end = start.z - TREAD * STEPS[0] as f32;
     let mut platform = Shape::default();
+    platform.cuboid([-1.4, 0.0, end - FLIGHT], [1.4, landing, end], 0xeee2ca);
     platform.cuboid(
-        v(-1.4, 0.0, end - FLIGHT),
-        v(1.4, landing, end),
-        rgb(0xeee2ca),
-    );
-    platform.cuboid(
-        v(-1.4, landing, end - FLIGHT),
-        v(1.4, landing + 0.02, end),
-        rgb(0xa83236),
+        [-1.4, landing, end - FLIGHT],
+        [1.4, landing + 0.02, end],
+        0xa83236,
     );
     shapes.push(platform);
     for side in [-1.0f32, 1.0] {
         let foot = v(1.4 * side, landing, end - 0.5 * FLIGHT);
-        let [treads, more] = stairs(foot, Vec3::X * side, 0.5 * FLIGHT, STEPS[1], [true, true]);
+        let [treads, more] = stairs(foot, Vec3::X * side, 0.5 * FLIGHT, STEPS[1]);
         shapes.push(treads);
         rails.add(&more, Transform::IDENTITY);
     }
@@ -524,11 +415,9 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         eye: v(2.3, 2.1, 8.6),
         target: v(-0.5, 2.55, -2.0),
         fov: 55f32.to_radians(),
-        near: 0.1,
         far: 400.0,
         ortho: (v(12.0, 14.0, 16.0), v(0.0, 1.5, 0.0)),
         ortho_height: 14.0,
-        sky: stage.images.add(sky.image()),
-        sky_brightness: 1000.0,
+        ..stage.under(&sky)
     }
 }

@@ -16,8 +16,11 @@ pub mod theatre;
 pub mod village;
 
 use bevy::{
-    camera::ScalingMode, core_pipeline::tonemapping::Tonemapping, ecs::system::SystemParam,
-    light::Skybox, prelude::*,
+    camera::ScalingMode,
+    core_pipeline::tonemapping::Tonemapping,
+    ecs::system::SystemParam,
+    light::{CascadeShadowConfigBuilder, Skybox},
+    prelude::*,
 };
 use bevy_comics::{ToonScene, toon::ToonShading};
 
@@ -129,6 +132,30 @@ impl Stage<'_, '_> {
         self.solid(mesh, material.clone(), Transform::IDENTITY);
     }
 
+    /// Light from all around.
+    pub fn ambient(&mut self, [r, g, b]: [f32; 3], brightness: f32) {
+        self.commands.insert_resource(GlobalAmbientLight {
+            color: Color::srgb(r, g, b),
+            brightness,
+            ..default()
+        });
+    }
+
+    /// A vantage under a sky, whose camera is still to be placed.
+    fn under(&mut self, sky: &sky::Sky) -> Vantage {
+        Vantage {
+            eye: Vec3::ZERO,
+            target: Vec3::ZERO,
+            fov: 0.0,
+            near: 0.1,
+            far: 1000.0,
+            ortho: (Vec3::ZERO, Vec3::ZERO),
+            ortho_height: 0.0,
+            sky: self.images.add(sky.image()),
+            sky_brightness: 1000.0,
+        }
+    }
+
     /// A rough material that leaves the colour to the vertices.
     pub fn matt(&mut self) -> Handle<StandardMaterial> {
         self.materials.add(StandardMaterial {
@@ -136,6 +163,60 @@ impl Stage<'_, '_> {
             reflectance: 0.15,
             ..default()
         })
+    }
+}
+
+/// A lamp, with shadow maps or without.
+pub fn lamplight(
+    at: Vec3,
+    intensity: f32,
+    color: Color,
+    range: f32,
+    shadow_maps_enabled: bool,
+) -> impl Bundle {
+    let light = PointLight {
+        intensity,
+        color,
+        range,
+        shadow_maps_enabled,
+        ..default()
+    };
+    (ScenePart, light, Transform::from_translation(at))
+}
+
+/// Light with shadows that comes from a direction, such as that of the sun. `shadows`: their cascades.
+pub fn sunlight(
+    from: Vec3,
+    illuminance: f32,
+    [r, g, b]: [f32; 3],
+    shadows: CascadeShadowConfigBuilder,
+) -> impl Bundle {
+    let light = DirectionalLight {
+        illuminance,
+        color: Color::srgb(r, g, b),
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    let at = Transform::from_translation(from).looking_at(Vec3::ZERO, Vec3::Y);
+    (ScenePart, light, at, shadows.build())
+}
+
+/// One cascade of shadows.
+fn shadows_within(maximum_distance: f32) -> CascadeShadowConfigBuilder {
+    CascadeShadowConfigBuilder {
+        num_cascades: 1,
+        maximum_distance,
+        ..default()
+    }
+}
+
+/// Several cascades of shadows, from where the first one ends.
+fn shadow_cascades(num_cascades: usize, first: f32, reach: f32) -> CascadeShadowConfigBuilder {
+    CascadeShadowConfigBuilder {
+        num_cascades,
+        first_cascade_far_bound: first,
+        maximum_distance: reach,
+        ..default()
     }
 }
 

@@ -2,7 +2,7 @@
 //! Figure 4). The ground has one million vertices.
 
 use bevy::{
-    light::{CascadeShadowConfigBuilder, light_consts::lux},
+    light::light_consts::lux,
     math::{Vec2, Vec3Swizzles},
     prelude::*,
 };
@@ -12,8 +12,10 @@ use bevy_comics::OutlineGroup;
 use super::{
     ScenePart, Stage, Vantage,
     noise::{Random, fractal, noise2, ridges, smoothstep},
+    shadow_cascades,
     shape::{Shape, blend, rgb, shade},
     sky::Sky,
+    sunlight,
 };
 
 /// Vertices along each side of the ground.
@@ -43,49 +45,29 @@ fn warp(t: f32) -> f32 {
 }
 
 fn ground_color(p: Vec3, normal: Vec3) -> [f32; 4] {
-    let steep = 1.0 - normal.y;
-    let patch = fractal(p.xz() / 23.0, 3);
-    let grass = blend(rgb(0x5f9a2e), rgb(0x9cbf45), 0.5 + patch);
-    let forest = blend(
-        rgb(0x2e6638),
-        rgb(0x4d8040),
-        0.5 + fractal(p.xz() / 90.0, 4),
-    );
-    let rock = blend(
-        rgb(0x7b7486),
-        rgb(0xa89d94),
-        0.5 + fractal(p.xz() / 60.0 + 9.0, 4),
-    );
-    let snow = rgb(0xf4f7fb);
-    let r = p.xz().length();
-    let mut color = blend(grass, forest, smoothstep(140.0, 600.0, r + 120.0 * patch));
-    let tree_line = 330.0 + 120.0 * fractal(p.xz() / 200.0, 3);
-    color = blend(
-        color,
-        rock,
-        smoothstep(tree_line - 90.0, tree_line + 60.0, p.y),
-    );
-    color = blend(
-        color,
-        rock,
-        smoothstep(0.28, 0.42, steep) * smoothstep(60.0, 180.0, p.y),
-    );
-    let snow_line = 620.0 + 160.0 * fractal(p.xz() / 260.0 + 4.0, 4);
-    blend(
-        color,
-        snow,
-        smoothstep(snow_line, snow_line + 110.0, p.y) * smoothstep(0.62, 0.4, steep),
-    )
+    let (at, steep) = (p.xz(), 1.0 - normal.y);
+    let between = |dark: u32, light: u32, t: f32| blend(rgb(dark), rgb(light), 0.5 + t);
+    let patch = fractal(at / 23.0, 3);
+    let grass = between(0x5f9a2e, 0x9cbf45, patch);
+    let forest = between(0x2e6638, 0x4d8040, fractal(at / 90.0, 4));
+    let rock = between(0x7b7486, 0xa89d94, fractal(at / 60.0 + 9.0, 4));
+    let trees = smoothstep(140.0, 600.0, at.length() + 120.0 * patch);
+    let mut color = blend(grass, forest, trees);
+    let tree_line = 330.0 + 120.0 * fractal(at / 200.0, 3);
+    let above_trees = smoothstep(tree_line - 90.0, tree_line + 60.0, p.y);
+    color = blend(color, rock, above_trees);
+    let cliff = smoothstep(0.28, 0.42, steep) * smoothstep(60.0, 180.0, p.y);
+    color = blend(color, rock, cliff);
+    let snow_line = 620.0 + 160.0 * fractal(at / 260.0 + 4.0, 4);
+    let snow = smoothstep(snow_line, snow_line + 110.0, p.y) * smoothstep(0.62, 0.4, steep);
+    blend(color, rgb(0xf4f7fb), snow)
 }
 
 /// The tiles of the ground. Together they have `SIDE` x `SIDE` vertices; those at the
 /// seams are in both tiles.
 pub fn ground() -> Vec<Shape> {
     let position = |i: u32, j: u32| {
-        let p = Vec2::new(
-            warp(i as f32 / (SIDE - 1) as f32),
-            warp(j as f32 / (SIDE - 1) as f32),
-        );
+        let p = Vec2::from([i, j].map(|i| warp(i as f32 / (SIDE - 1) as f32)));
         Vec3::new(p.x, height(p), p.y)
     };
     let rows: Vec<Vec<Vec3>> = (0..SIDE)
@@ -97,42 +79,29 @@ pub fn ground() -> Vec<Shape> {
     };
     let step = SIDE / TILES;
     let mut tiles = Vec::new();
-    for tile_y in 0..TILES {
-        for tile_x in 0..TILES {
-            let mut shape = Shape::default();
-            let (x0, y0) = (tile_x * step, tile_y * step);
-            let (x1, y1) = ((x0 + step).min(SIDE - 1), (y0 + step).min(SIDE - 1));
-            for j in y0..=y1 {
-                for i in x0..=x1 {
-                    let (i, j) = (i64::from(i), i64::from(j));
-                    let east = at(i + 1, j) - at(i - 1, j);
-                    let south = at(i, j + 1) - at(i, j - 1);
-                    let normal = south.cross(east).normalize_or(Vec3::Y);
-                    shape.vertex(at(i, j), normal, ground_color(at(i, j), normal));
-                }
-            }
-            let width = x1 - x0 + 1;
-            for j in 0..y1 - y0 {
-                for i in 0..x1 - x0 {
-                    let a = j * width + i;
-                    shape
-                        .indices
-                        .extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
-                }
-            }
-            tiles.push(shape);
+    for tile in 0..TILES * TILES {
+        let mut shape = Shape::default();
+        let [x0, y0] = [tile % TILES, tile / TILES].map(|tile| tile * step);
+        let [x1, y1] = [x0, y0].map(|first| (first + step).min(SIDE - 1));
+        for (i, j) in (y0..=y1).flat_map(|j| (x0..=x1).map(move |i| (i.into(), j.into()))) {
+            let east = at(i + 1, j) - at(i - 1, j);
+            let south = at(i, j + 1) - at(i, j - 1);
+            let normal = south.cross(east).normalize_or(Vec3::Y);
+            shape.vertex(at(i, j), normal, ground_color(at(i, j), normal));
         }
+        shape.grid(x1 - x0 + 1, y1 - y0 + 1);
+        tiles.push(shape);
     }
     tiles
 }
 
 pub fn conifer(random: &mut Random) -> Shape {
     let mut tree = Shape::default();
-    tree.frustum(Vec3::ZERO, 1.6, (0.22, 0.16), 7, rgb(0x6a4a32));
+    tree.frustum(Vec3::ZERO, 1.6, (0.22, 0.16), 7, 0x6a4a32);
     let green = blend(rgb(0x1f5a35), rgb(0x35803f), random.unit());
     for (y, radius, rise) in [(0.9, 1.75, 2.4), (2.2, 1.35, 2.1), (3.4, 0.95, 1.9)] {
         let tier = shade(green, 0.85 + 0.1 * y);
-        tree.frustum(Vec3::new(0.0, y, 0.0), rise, (radius, 0.0), 11, tier);
+        tree.frustum([0.0, y, 0.0], rise, (radius, 0.0), 11, tier);
         let skirt: Vec<_> = (0..11)
             .map(|i| {
                 let a = std::f32::consts::TAU * i as f32 / 11.0;
@@ -146,7 +115,7 @@ pub fn conifer(random: &mut Random) -> Shape {
 
 pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
     let mut tree = Shape::default();
-    tree.frustum(Vec3::ZERO, 2.6, (0.32, 0.2), 8, rgb(0x74523a));
+    tree.frustum(Vec3::ZERO, 2.6, (0.32, 0.2), 8, 0x74523a);
     let seed = random.range(0.0, 100.0);
     for (offset, size) in [
         (Vec3::new(0.0, 4.1, 0.0), 1.9),
@@ -156,7 +125,7 @@ pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
     ] {
         tree.blob(
             offset,
-            Vec3::new(size, size * 0.85, size),
+            [size, size * 0.85, size],
             9,
             |d| shade(leaf, 0.8 + 0.35 * d.y.max(-0.3)),
             |d| 0.12 * super::noise::noise3(d * 2.7 + seed),
@@ -169,7 +138,7 @@ pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
 fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
     let mut shape = Shape::default();
     let tall = random.range(0.28, 0.62);
-    shape.frustum(Vec3::ZERO, tall, (0.012, 0.008), 5, rgb(0x4e8a2c));
+    shape.frustum(Vec3::ZERO, tall, (0.012, 0.008), 5, 0x4e8a2c);
     for side in [0.0, 2.4] {
         let out = Vec3::new(f32::cos(side), 0.0, f32::sin(side));
         let base = Vec3::Y * tall * 0.25;
@@ -191,24 +160,17 @@ fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
             centre + tilt * Vec3::new(angle.cos() * r, y, angle.sin() * r)
         };
         let tone = shade(petal, if k % 2 == 0 { 1.0 } else { 0.88 });
-        shape.polygon(
-            &[
-                out(a, radius * 0.15, 0.0),
-                out(a + half, radius * 0.75, 0.02),
-                out(a + half * 0.45, radius * 1.05, 0.035),
-                out(a - half * 0.45, radius * 1.05, 0.035),
-                out(a - half, radius * 0.75, 0.02),
-            ],
-            tone,
-        );
+        let outline = [
+            out(a, radius * 0.15, 0.0),
+            out(a + half, radius * 0.75, 0.02),
+            out(a + half * 0.45, radius * 1.05, 0.035),
+            out(a - half * 0.45, radius * 1.05, 0.035),
+            out(a - half, radius * 0.75, 0.02),
+        ];
+        shape.polygon(&outline, tone);
     }
-    shape.blob(
-        centre + tilt * Vec3::Y * 0.012,
-        Vec3::splat(radius * 0.34),
-        4,
-        |_| rgb(0xf2b51d),
-        |_| 0.0,
-    );
+    let middle = centre + tilt * Vec3::Y * 0.012;
+    shape.ellipsoid(middle, Vec3::splat(radius * 0.34), 4, 0xf2b51d);
     shape
 }
 
@@ -235,12 +197,8 @@ fn meadow(random: &mut Random) -> Shape {
         let kind = (drift as usize + (random.unit() * 5.0) as usize) % kinds.len();
         let size = random.range(0.7, 1.15);
         let turn = Quat::from_rotation_y(random.range(0.0, 6.3));
-        shape.add(
-            &kinds[kind],
-            Transform::from_translation(grounded(p))
-                .with_rotation(turn)
-                .with_scale(Vec3::splat(size)),
-        );
+        let at = Transform::from_translation(grounded(p)).with_rotation(turn);
+        shape.add(&kinds[kind], at.with_scale(Vec3::splat(size)));
     }
     for _ in 0..14000 {
         let base = grounded(scatter(random, 40.0));
@@ -278,19 +236,15 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         let tile = (ScenePart, mesh, MeshMaterial3d(matt.clone()), ChildOf(land));
         stage.commands.spawn((tile, Transform::IDENTITY));
     }
-    let flowers = stage.meshes.add(meadow(&mut random).into_mesh());
-    stage.solid(flowers, leaf.clone(), Transform::IDENTITY);
+    stage.shape(meadow(&mut random), &leaf);
 
     let conifers: Vec<_> = (0..3)
         .map(|_| stage.meshes.add(conifer(&mut random).into_mesh()))
         .collect();
-    let broad: Vec<_> = [0x6fa53a, 0x8fb544, 0xd98a2b]
-        .map(|hex| {
-            stage
-                .meshes
-                .add(broadleaf(&mut random, rgb(hex)).into_mesh())
-        })
-        .to_vec();
+    let broad = [0x6fa53a, 0x8fb544, 0xd98a2b].map(|hex| {
+        let tree = broadleaf(&mut random, rgb(hex));
+        stage.meshes.add(tree.into_mesh())
+    });
     let plant = |stage: &mut Stage, p: Vec2, mesh: &Handle<Mesh>, size: f32, turn: f32| {
         let at = Vec3::new(p.x, height(p) - 0.1, p.y);
         let transform = Transform::from_translation(at)
@@ -319,28 +273,10 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         plant(stage, p, &mesh, size, angle * 9.0);
     }
 
-    stage.commands.spawn((
-        ScenePart,
-        DirectionalLight {
-            illuminance: lux::AMBIENT_DAYLIGHT,
-            color: Color::srgb(1.0, 0.95, 0.85),
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
-        CascadeShadowConfigBuilder {
-            num_cascades: 3,
-            first_cascade_far_bound: 14.0,
-            maximum_distance: 260.0,
-            ..default()
-        }
-        .build(),
-    ));
-    stage.commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.68, 0.8, 1.0),
-        brightness: 1200.0,
-        ..default()
-    });
+    let shadows = shadow_cascades(3, 14.0, 260.0);
+    let light = sunlight(sun, lux::AMBIENT_DAYLIGHT, [1.0, 0.95, 0.85], shadows);
+    stage.commands.spawn(light);
+    stage.ambient([0.68, 0.8, 1.0], 1200.0);
 
     let sky = Sky {
         zenith: 0x3c78bd,
@@ -356,11 +292,9 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         eye,
         target: eye + Vec3::new(-0.5, 0.62, -10.0),
         fov: 54f32.to_radians(),
-        near: 0.1,
         far: 12_000.0,
         ortho: (Vec3::new(150.0, 190.0, 330.0), Vec3::new(2.0, 6.0, -12.0)),
         ortho_height: 62.0,
-        sky: stage.images.add(sky.image()),
-        sky_brightness: 1000.0,
+        ..stage.under(&sky)
     }
 }

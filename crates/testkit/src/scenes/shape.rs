@@ -7,6 +7,23 @@ use bevy::{
     prelude::*,
 };
 
+/// A colour in linear RGBA, or an sRGB code.
+pub trait Tint {
+    fn rgba(self) -> [f32; 4];
+}
+
+impl Tint for [f32; 4] {
+    fn rgba(self) -> [f32; 4] {
+        self
+    }
+}
+
+impl Tint for u32 {
+    fn rgba(self) -> [f32; 4] {
+        rgb(self)
+    }
+}
+
 /// A growing triangle mesh with a colour for every vertex.
 #[derive(Clone, Default)]
 pub struct Shape {
@@ -24,12 +41,8 @@ pub fn rgb(hex: u32) -> [f32; 4] {
 
 /// A colour times a factor; alpha stays.
 pub fn shade(color: [f32; 4], factor: f32) -> [f32; 4] {
-    [
-        color[0] * factor,
-        color[1] * factor,
-        color[2] * factor,
-        color[3],
-    ]
+    let [r, g, b, a] = color;
+    [r * factor, g * factor, b * factor, a]
 }
 
 pub fn blend(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
@@ -70,14 +83,9 @@ impl Shape {
     }
 
     /// An axis-aligned box between two corners.
-    pub fn cuboid(&mut self, low: Vec3, high: Vec3, color: [f32; 4]) {
-        let p = |x: bool, y: bool, z: bool| {
-            Vec3::new(
-                if x { high.x } else { low.x },
-                if y { high.y } else { low.y },
-                if z { high.z } else { low.z },
-            )
-        };
+    pub fn cuboid(&mut self, low: impl Into<Vec3>, high: impl Into<Vec3>, color: impl Tint) {
+        let (low, high, color) = (low.into(), high.into(), color.rgba());
+        let p = |x, y, z| Vec3::select(BVec3::new(x, y, z), high, low);
         let (f, t) = (false, true);
         for quad in [
             [p(f, f, t), p(t, f, t), p(t, t, t), p(f, t, t)],
@@ -91,16 +99,29 @@ impl Shape {
         }
     }
 
+    /// A box of which `side` (-1 left, 1 right) is where +x is: `low` and `high` are for the right side.
+    pub fn beside(
+        &mut self,
+        side: f32,
+        low: impl Into<Vec3>,
+        high: impl Into<Vec3>,
+        color: impl Tint,
+    ) {
+        let [a, b] = [low.into(), high.into()].map(|p| Vec3::new(side * p.x, p.y, p.z));
+        self.cuboid(a.min(b), a.max(b), color);
+    }
+
     /// A cone, a cylinder or a frustum that stands on `base`; `radii` at the bottom and
     /// at the top.
     pub fn frustum(
         &mut self,
-        base: Vec3,
+        base: impl Into<Vec3>,
         height: f32,
         radii: (f32, f32),
         sides: u32,
-        color: [f32; 4],
+        color: impl Tint,
     ) {
+        let (base, color) = (base.into(), color.rgba());
         let slope = (radii.0 - radii.1) / height;
         let ring = |i: u32, radius: f32, y: f32| {
             let angle = std::f32::consts::TAU * i as f32 / sides as f32;
@@ -124,24 +145,31 @@ impl Shape {
         }
     }
 
+    /// A cylinder between two points.
+    pub fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, sides: u32, color: impl Tint) {
+        let along = to - from;
+        let mut rod = Shape::default();
+        rod.frustum(Vec3::ZERO, along.length(), (radius, radius), sides, color);
+        let turn = Quat::from_rotation_arc(Vec3::Y, along.normalize());
+        self.add(&rod, Transform::from_translation(from).with_rotation(turn));
+    }
+
     /// An ellipsoid whose radius is scaled by `1 + bump(direction)`.
     pub fn blob(
         &mut self,
-        centre: Vec3,
-        radius: Vec3,
+        centre: impl Into<Vec3>,
+        radius: impl Into<Vec3>,
         rings: u32,
         color: impl Fn(Vec3) -> [f32; 4],
         bump: impl Fn(Vec3) -> f32,
     ) {
+        let (centre, radius) = (centre.into(), radius.into());
         let sides = rings * 2;
         let direction = |i: u32, j: u32| {
             let polar = std::f32::consts::PI * i as f32 / rings as f32;
             let around = std::f32::consts::TAU * (j % sides) as f32 / sides as f32;
-            Vec3::new(
-                polar.sin() * around.cos(),
-                polar.cos(),
-                polar.sin() * around.sin(),
-            )
+            let (sin, cos) = (polar.sin(), polar.cos());
+            Vec3::new(sin * around.cos(), cos, sin * around.sin())
         };
         let first = self.positions.len() as u32;
         for i in 0..=rings {
@@ -154,12 +182,49 @@ impl Shape {
         let at = |i: u32, j: u32| first + i * (sides + 1) + j;
         for i in 0..rings {
             for j in 0..sides {
-                self.indices
-                    .extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
-                self.indices
-                    .extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                self.indices.extend([a, b, c, a, c, d]);
             }
         }
+    }
+
+    pub fn ellipsoid(
+        &mut self,
+        centre: impl Into<Vec3>,
+        radius: impl Into<Vec3>,
+        rings: u32,
+        color: impl Tint,
+    ) {
+        let color = color.rgba();
+        self.blob(centre, radius, rings, |_| color, |_| 0.0);
+    }
+
+    /// The triangles of a grid of vertices from the first one on, with rows of some vertices.
+    pub fn grid(&mut self, columns: u32, rows: u32) {
+        for j in 0..rows - 1 {
+            for i in 0..columns - 1 {
+                let a = j * columns + i;
+                let b = a + columns;
+                self.indices.extend([a, b, a + 1, a + 1, b, b + 1]);
+            }
+        }
+    }
+
+    /// Adds triangles with smooth normals: each vertex has the mean of its triangles, by their areas.
+    pub fn smooth(&mut self, points: &[Vec3], triangles: &[[u32; 3]], color: [f32; 4]) {
+        let mut normals = vec![Vec3::ZERO; points.len()];
+        for corners in triangles {
+            let [a, b, c] = corners.map(|k| points[k as usize]);
+            for corner in corners {
+                normals[*corner as usize] += (b - a).cross(c - a);
+            }
+        }
+        let first = self.positions.len() as u32;
+        for (point, normal) in points.iter().zip(normals) {
+            self.vertex(*point, normal.normalize_or(Vec3::Y), color);
+        }
+        let corners = triangles.as_flattened();
+        self.indices.extend(corners.iter().map(|k| first + k));
     }
 
     /// Adds a transformed copy of another shape.
@@ -167,18 +232,10 @@ impl Shape {
         let affine: Affine3A = transform.compute_affine();
         let normals: Mat3A = affine.matrix3.inverse().transpose();
         let first = self.positions.len() as u32;
-        self.positions.extend(
-            other
-                .positions
-                .iter()
-                .map(|p| affine.transform_point3(Vec3::from(*p)).to_array()),
-        );
-        self.normals.extend(
-            other
-                .normals
-                .iter()
-                .map(|n| (normals * Vec3::from(*n)).normalize_or(Vec3::Y).to_array()),
-        );
+        let moved = |p: &[f32; 3]| affine.transform_point3(Vec3::from(*p)).to_array();
+        let turned = |n: &[f32; 3]| (normals * Vec3::from(*n)).normalize_or(Vec3::Y).to_array();
+        self.positions.extend(other.positions.iter().map(moved));
+        self.normals.extend(other.normals.iter().map(turned));
         self.colors.extend(&other.colors);
         self.indices.extend(other.indices.iter().map(|i| first + i));
     }

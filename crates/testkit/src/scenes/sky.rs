@@ -34,17 +34,11 @@ impl Sky {
     pub fn color(&self, direction: Vec3) -> [f32; 4] {
         let up = direction.y;
         if up < 0.0 {
-            return blend(
-                rgb(self.horizon),
-                rgb(self.ground),
-                smoothstep(0.0, 0.25, -up),
-            );
+            let below = smoothstep(0.0, 0.25, -up);
+            return blend(rgb(self.horizon), rgb(self.ground), below);
         }
-        let low = blend(
-            rgb(self.horizon),
-            rgb(self.middle),
-            smoothstep(0.0, 0.22, up),
-        );
+        let above = smoothstep(0.0, 0.22, up);
+        let low = blend(rgb(self.horizon), rgb(self.middle), above);
         let mut color = blend(low, rgb(self.zenith), smoothstep(0.18, 0.9, up));
         // Clouds on a plane overhead that fade out towards the horizon.
         let plane = Vec2::new(direction.x, direction.z) / (up + 0.12);
@@ -53,11 +47,8 @@ impl Sky {
         let cloud = smoothstep(edge, edge + 0.16, density) * smoothstep(0.02, 0.2, up);
         color = blend(color, rgb(self.cloud), cloud * 0.9);
         let towards = direction.dot(self.sun.normalize()).max(0.0);
-        blend(
-            color,
-            [1.0, 0.95, 0.8, 1.0],
-            0.35 * towards.powi(24) + smoothstep(0.9985, 0.9993, towards),
-        )
+        let glow = 0.35 * towards.powi(24) + smoothstep(0.9985, 0.9993, towards);
+        blend(color, [1.0, 0.95, 0.8, 1.0], glow)
     }
 
     pub fn image(&self) -> Image {

@@ -1,14 +1,12 @@
 //! The Utah teapot on a cube on a plane (\[CL\] Figure 6).
 
-use bevy::{
-    light::{CascadeShadowConfigBuilder, light_consts::lux},
-    prelude::*,
-};
+use bevy::{light::light_consts::lux, prelude::*};
 
 use super::{
-    ScenePart, Stage, Vantage,
+    Stage, Vantage, shadow_cascades,
     shape::{Shape, rgb},
     sky::Sky,
+    sunlight,
 };
 
 /// Martin Newell's profile curves (University of Utah, 1975): radius and height of the
@@ -27,115 +25,26 @@ const PROFILES: [[[f32; 2]; 4]; 6] = [
 /// Length of the tangents of the cubic that stands for a quarter of the unit circle.
 const QUARTER: f32 = 0.56;
 
-/// Rows of control points of the handle and the spout, on one side of the plane of
-/// symmetry.
-const HANDLE: [[[[f32; 3]; 4]; 4]; 2] = [
-    [
-        [
-            [-1.6, 0.0, 2.025],
-            [-1.6, -0.3, 2.025],
-            [-1.5, -0.3, 2.25],
-            [-1.5, 0.0, 2.25],
-        ],
-        [
-            [-2.3, 0.0, 2.025],
-            [-2.3, -0.3, 2.025],
-            [-2.5, -0.3, 2.25],
-            [-2.5, 0.0, 2.25],
-        ],
-        [
-            [-2.7, 0.0, 2.025],
-            [-2.7, -0.3, 2.025],
-            [-3.0, -0.3, 2.25],
-            [-3.0, 0.0, 2.25],
-        ],
-        [
-            [-2.7, 0.0, 1.8],
-            [-2.7, -0.3, 1.8],
-            [-3.0, -0.3, 1.8],
-            [-3.0, 0.0, 1.8],
-        ],
-    ],
-    [
-        [
-            [-2.7, 0.0, 1.8],
-            [-2.7, -0.3, 1.8],
-            [-3.0, -0.3, 1.8],
-            [-3.0, 0.0, 1.8],
-        ],
-        [
-            [-2.7, 0.0, 1.575],
-            [-2.7, -0.3, 1.575],
-            [-3.0, -0.3, 1.35],
-            [-3.0, 0.0, 1.35],
-        ],
-        [
-            [-2.5, 0.0, 1.125],
-            [-2.5, -0.3, 1.125],
-            [-2.65, -0.3, 0.9375],
-            [-2.65, 0.0, 0.9375],
-        ],
-        [
-            [-2.0, 0.0, 0.9],
-            [-2.0, -0.3, 0.9],
-            [-1.9, -0.3, 0.6],
-            [-1.9, 0.0, 0.6],
-        ],
-    ],
+/// Rows of control points of the two patches of the handle and of the spout, on one side of the plane of
+/// symmetry: place and height of the first two points, how far the middle two are aside, place and height of
+/// the last two. Both patches have the fourth row.
+const HANDLE: [[f32; 5]; 7] = [
+    [-1.6, 2.025, -0.3, -1.5, 2.25],
+    [-2.3, 2.025, -0.3, -2.5, 2.25],
+    [-2.7, 2.025, -0.3, -3.0, 2.25],
+    [-2.7, 1.8, -0.3, -3.0, 1.8],
+    [-2.7, 1.575, -0.3, -3.0, 1.35],
+    [-2.5, 1.125, -0.3, -2.65, 0.9375],
+    [-2.0, 0.9, -0.3, -1.9, 0.6],
 ];
-const SPOUT: [[[[f32; 3]; 4]; 4]; 2] = [
-    [
-        [
-            [1.7, 0.0, 1.425],
-            [1.7, -0.66, 1.425],
-            [1.7, -0.66, 0.6],
-            [1.7, 0.0, 0.6],
-        ],
-        [
-            [2.6, 0.0, 1.425],
-            [2.6, -0.66, 1.425],
-            [3.1, -0.66, 0.825],
-            [3.1, 0.0, 0.825],
-        ],
-        [
-            [2.3, 0.0, 2.1],
-            [2.3, -0.25, 2.1],
-            [2.4, -0.25, 2.025],
-            [2.4, 0.0, 2.025],
-        ],
-        [
-            [2.7, 0.0, 2.4],
-            [2.7, -0.25, 2.4],
-            [3.3, -0.25, 2.4],
-            [3.3, 0.0, 2.4],
-        ],
-    ],
-    [
-        [
-            [2.7, 0.0, 2.4],
-            [2.7, -0.25, 2.4],
-            [3.3, -0.25, 2.4],
-            [3.3, 0.0, 2.4],
-        ],
-        [
-            [2.8, 0.0, 2.475],
-            [2.8, -0.25, 2.475],
-            [3.525, -0.25, 2.49375],
-            [3.525, 0.0, 2.49375],
-        ],
-        [
-            [2.9, 0.0, 2.475],
-            [2.9, -0.15, 2.475],
-            [3.45, -0.15, 2.5125],
-            [3.45, 0.0, 2.5125],
-        ],
-        [
-            [2.8, 0.0, 2.4],
-            [2.8, -0.15, 2.4],
-            [3.2, -0.15, 2.4],
-            [3.2, 0.0, 2.4],
-        ],
-    ],
+const SPOUT: [[f32; 5]; 7] = [
+    [1.7, 1.425, -0.66, 1.7, 0.6],
+    [2.6, 1.425, -0.66, 3.1, 0.825],
+    [2.3, 2.1, -0.25, 2.4, 2.025],
+    [2.7, 2.4, -0.25, 3.3, 2.4],
+    [2.8, 2.475, -0.25, 3.525, 2.49375],
+    [2.9, 2.475, -0.15, 3.45, 2.5125],
+    [2.8, 2.4, -0.15, 3.2, 2.4],
 ];
 
 /// A bicubic Bezier patch in the data's frame, z up.
@@ -153,8 +62,17 @@ pub fn patches() -> Vec<Patch> {
             }));
         }
     }
-    for half in [HANDLE, SPOUT].into_iter().flatten() {
-        let patch = half.map(|row| row.map(Vec3::from));
+    let row = |[x, z, y, far_x, far_z]: [f32; 5]| {
+        let places = [
+            [x, 0.0, z],
+            [x, y, z],
+            [far_x, y, far_z],
+            [far_x, 0.0, far_z],
+        ];
+        places.map(Vec3::from)
+    };
+    for (part, first) in [(HANDLE, 0), (HANDLE, 3), (SPOUT, 0), (SPOUT, 3)] {
+        let patch = [0, 1, 2, 3].map(|k| row(part[first + k]));
         patches.push(patch);
         // The mirror image has its columns in reverse order, to face outwards.
         let mirrored = patch.map(|row| {
@@ -203,12 +121,8 @@ pub fn mesh(steps: u32, color: [f32; 4]) -> Shape {
         for i in 0..steps {
             for j in 0..steps {
                 let at = |i: u32, j: u32| first + i * (steps + 1) + j;
-                shape
-                    .indices
-                    .extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
-                shape
-                    .indices
-                    .extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                shape.indices.extend([a, c, d, a, b, c]);
             }
         }
     }
@@ -237,63 +151,33 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     stage.solid(teapot, china, Transform::from_xyz(0.0, 4.0, 0.0));
 
     let mut cube = Shape::default();
-    cube.cuboid(
-        Vec3::new(-3.0, 0.0, -3.0),
-        Vec3::new(3.0, 4.0, 3.0),
-        rgb(0x2f7f79),
-    );
+    cube.cuboid([-3.0, 0.0, -3.0], [3.0, 4.0, 3.0], 0x2f7f79);
     let cube = stage.meshes.add(cube.into_mesh());
-    stage.solid(
-        cube,
-        matt.clone(),
-        Transform::from_rotation(Quat::from_rotation_y(0.5)),
-    );
+    let turned = Transform::from_rotation(Quat::from_rotation_y(0.5));
+    stage.solid(cube, matt.clone(), turned);
 
     // A round table top: with an endless floor, the teapot would have only a small part
     // of the depth range.
     let mut floor = Shape::default();
-    floor.frustum(
-        Vec3::new(0.0, -0.6, 0.0),
-        0.6,
-        (15.0, 15.0),
-        96,
-        rgb(0xe3c98a),
-    );
-    let floor = stage.meshes.add(floor.into_mesh());
-    stage.solid(floor, matt, Transform::IDENTITY);
+    floor.frustum([0.0, -0.6, 0.0], 0.6, (15.0, 15.0), 96, 0xe3c98a);
+    stage.shape(floor, &matt);
 
-    stage.commands.spawn((
-        ScenePart,
-        DirectionalLight {
-            illuminance: lux::AMBIENT_DAYLIGHT * 0.85,
-            color: Color::srgb(1.0, 0.96, 0.88),
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
-        CascadeShadowConfigBuilder {
-            num_cascades: 2,
-            first_cascade_far_bound: 26.0,
-            maximum_distance: 60.0,
-            ..default()
-        }
-        .build(),
-    ));
-    stage.commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.72, 0.82, 1.0),
-        brightness: 1200.0,
-        ..default()
-    });
+    let shadows = shadow_cascades(2, 26.0, 60.0);
+    let light = sunlight(
+        sun,
+        lux::AMBIENT_DAYLIGHT * 0.85,
+        [1.0, 0.96, 0.88],
+        shadows,
+    );
+    stage.commands.spawn(light);
+    stage.ambient([0.72, 0.82, 1.0], 1200.0);
 
     Vantage {
         eye: Vec3::new(5.2, 8.4, 11.5),
         target: Vec3::new(0.1, 4.15, 0.0),
         fov: 42f32.to_radians(),
-        near: 0.1,
-        far: 1000.0,
         ortho: (Vec3::new(16.0, 21.0, 33.0), Vec3::new(0.1, 4.0, 0.0)),
         ortho_height: 12.0,
-        sky: stage.images.add(sky.image()),
-        sky_brightness: 1000.0,
+        ..stage.under(&sky)
     }
 }

@@ -4,15 +4,16 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    light::{CascadeShadowConfigBuilder, PointLight, SpotLight},
+    light::{NotShadowCaster, SpotLight},
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 
 use super::{
-    ScenePart, Stage, Vantage,
+    ScenePart, Stage, Vantage, lamplight, shadows_within,
     shape::{Shape, rgb, shade},
     sky::Sky,
+    sunlight,
 };
 
 /// A texture of flat squares, `width` per row, in sRGB codes.
@@ -20,24 +21,19 @@ fn texels(stage: &mut Stage, width: u32, colors: &[u32]) -> Handle<Image> {
     // Texels per side of a square: filtering then blurs only a narrow border.
     const SCALE: u32 = 64;
     let height = colors.len() as u32 / width;
+    let size = Extent3d {
+        width: width * SCALE,
+        height: height * SCALE,
+        depth_or_array_layers: 1,
+    };
     let mut bytes = Vec::new();
-    for y in 0..height * SCALE {
-        for x in 0..width * SCALE {
-            let [_, r, g, b] = colors[((y / SCALE) * width + x / SCALE) as usize].to_be_bytes();
-            bytes.extend([r, g, b, 255]);
-        }
+    for (y, x) in (0..size.height).flat_map(|y| (0..size.width).map(move |x| (y, x))) {
+        let [_, r, g, b] = colors[((y / SCALE) * width + x / SCALE) as usize].to_be_bytes();
+        bytes.extend([r, g, b, 255]);
     }
-    stage.images.add(Image::new(
-        Extent3d {
-            width: width * SCALE,
-            height: height * SCALE,
-            depth_or_array_layers: 1,
-        },
-        TextureDimension::D2,
-        bytes,
-        TextureFormat::Rgba8UnormSrgb,
-        RenderAssetUsages::RENDER_WORLD,
-    ))
+    let (dimension, usage) = (TextureDimension::D2, RenderAssetUsages::RENDER_WORLD);
+    let image = Image::new(size, dimension, bytes, TextureFormat::Rgba8UnormSrgb, usage);
+    stage.images.add(image)
 }
 
 struct Workshop<'a, 'w, 's> {
@@ -70,15 +66,9 @@ impl Workshop<'_, '_, '_> {
         at: Transform,
     ) -> Entity {
         let mesh = self.stage.meshes.add(mesh);
-        self.stage
-            .commands
-            .spawn((
-                ScenePart,
-                Mesh3d(mesh),
-                MeshMaterial3d(material.clone()),
-                at,
-            ))
-            .id()
+        let material = MeshMaterial3d(material.clone());
+        let part = (ScenePart, Mesh3d(mesh), material, at);
+        self.stage.commands.spawn(part).id()
     }
 }
 
@@ -91,9 +81,7 @@ fn ball(radius: f32) -> Mesh {
 }
 
 fn cone(radius: f32, height: f32) -> Mesh {
-    let mut shape = Shape::default();
-    shape.frustum(Vec3::ZERO, height, (radius, 0.001), 40, [1.0; 4]);
-    shape.into_mesh()
+    tube(radius, 0.001, height)
 }
 
 fn tube(bottom: f32, top: f32, height: f32) -> Mesh {
@@ -146,20 +134,11 @@ fn chick(shop: &mut Workshop, place: Transform) {
         shop.put(mesh, material, place * local);
     };
     let mut body = Shape::default();
-    body.blob(
-        Vec3::ZERO,
-        Vec3::new(0.62, 0.66, 0.68),
-        24,
-        |_| [1.0; 4],
-        |_| 0.0,
-    );
+    body.ellipsoid(Vec3::ZERO, [0.62, 0.66, 0.68], 24, [1.0; 4]);
     put(body.into_mesh(), &down, at(0.0, 0.86, 0.0));
     put(ball(0.43), &down, at(0.0, 1.62, 0.14));
-    put(
-        cone(0.15, 0.34),
-        &orange,
-        at(0.0, 1.6, 0.5).with_rotation(Quat::from_rotation_x(1.57)),
-    );
+    let beak = at(0.0, 1.6, 0.5).with_rotation(Quat::from_rotation_x(1.57));
+    put(cone(0.15, 0.34), &orange, beak);
     for side in [-1.0, 1.0] {
         put(ball(0.075), &black, at(0.17 * side, 1.72, 0.5));
         let wing = at(0.6 * side, 0.95, -0.05)
@@ -167,52 +146,32 @@ fn chick(shop: &mut Workshop, place: Transform) {
             .with_scale(Vec3::new(0.28, 0.8, 0.9));
         put(ball(0.46), &down, wing);
         put(tube(0.05, 0.05, 0.3), &orange, at(0.22 * side, 0.0, 0.05));
-        put(
-            Cuboid::new(0.24, 0.06, 0.4).into(),
-            &orange,
-            at(0.22 * side, 0.03, 0.15),
-        );
+        let foot = Cuboid::new(0.24, 0.06, 0.4);
+        put(foot.into(), &orange, at(0.22 * side, 0.03, 0.15));
     }
     for (lean, height) in [(-0.35f32, 0.2), (0.0, 0.28), (0.35, 0.2)] {
-        put(
-            cone(0.05, height),
-            &orange,
-            at(0.0, 2.0, 0.1).with_rotation(Quat::from_rotation_z(lean)),
-        );
+        let tuft = at(0.0, 2.0, 0.1).with_rotation(Quat::from_rotation_z(lean));
+        put(cone(0.05, height), &orange, tuft);
     }
 }
 
 fn props(shop: &mut Workshop) {
     // Two stacked crates with flush sides: only their ids tell them apart.
-    let plank = texels(
-        shop.stage,
-        4,
-        &[
-            0xc8935a, 0xc8935a, 0xc8935a, 0xc8935a, 0xb67f47, 0xb67f47, 0xb67f47, 0xb67f47,
-            0xc8935a, 0xc8935a, 0xc8935a, 0xc8935a, 0xb67f47, 0xb67f47, 0xb67f47, 0xb67f47,
-        ],
-    );
+    let rows = [[0xc8935a; 4], [0xb67f47; 4]].repeat(2);
+    let plank = texels(shop.stage, 4, rows.as_flattened());
     let wood = shop.textured(plank, 0.9);
     let turn = Quat::from_rotation_y(0.42);
     for y in [0.6, 1.8] {
-        shop.put(
-            Cuboid::new(1.2, 1.2, 1.2),
-            &wood,
-            at(2.75, y, -0.7).with_rotation(turn),
-        );
+        let place = at(2.75, y, -0.7).with_rotation(turn);
+        shop.put(Cuboid::new(1.2, 1.2, 1.2), &wood, place);
     }
     // A beach ball: texture and highlight.
-    let stripes = texels(
-        shop.stage,
-        6,
-        &[0xe23b3b, 0xf7f2e6, 0x2f7fd1, 0xf7f2e6, 0xf2b430, 0xf7f2e6],
-    );
+    let stripes = [0xe23b3b, 0xf7f2e6, 0x2f7fd1, 0xf7f2e6, 0xf2b430, 0xf7f2e6];
+    let stripes = texels(shop.stage, 6, &stripes);
     let rubber = shop.textured(stripes, 0.28);
-    shop.put(
-        ball(0.62),
-        &rubber,
-        at(1.35, 0.62, 1.75).with_rotation(Quat::from_euler(EulerRot::XYZ, 0.5, 0.3, 0.6)),
-    );
+    let turn = Quat::from_euler(EulerRot::XYZ, 0.5, 0.3, 0.6);
+    let place = at(1.35, 0.62, 1.75).with_rotation(turn);
+    shop.put(ball(0.62), &rubber, place);
     // A table lamp; its light is spawned in `spawn`.
     let brass = shop.paint(0xb98d3a, 0.35);
     let shade_material = shop.stage.materials.add(StandardMaterial {
@@ -231,55 +190,39 @@ fn props(shop: &mut Workshop) {
     shop.put(tube(0.5, 0.42, 0.14), &brass, foot);
     shop.put(tube(0.07, 0.07, 2.5), &brass, foot * at(0.0, 0.14, 0.0));
     let glow = shop.put(ball(0.2), &bulb, foot * at(0.0, 2.72, 0.0));
-    shop.stage
-        .commands
-        .entity(glow)
-        .insert(bevy::light::NotShadowCaster);
+    let mut glow = shop.stage.commands.entity(glow);
+    glow.insert(NotShadowCaster);
     let mut hood = Shape::default();
     for i in 0..40u32 {
         let ring = |k: u32, radius: f32, y: f32| {
             let a = std::f32::consts::TAU * k as f32 / 40.0;
             Vec3::new(radius * a.cos(), y, radius * a.sin())
         };
-        let (n0, n1) = (ring(i, 0.9, 0.35), ring(i + 1, 0.9, 0.35));
-        let corners = [
-            (ring(i, 0.72, 0.0), n0),
-            (ring(i + 1, 0.72, 0.0), n1),
-            (ring(i + 1, 0.34, 0.62), n1),
-            (ring(i, 0.34, 0.62), n0),
-        ]
-        .map(|(p, n)| hood.vertex(p, n.normalize(), [1.0; 4]));
-        let [a, b, c, d] = corners;
+        let mut corner = |k: u32, radius: f32, y: f32| {
+            let normal = ring(k, 0.9, 0.35).normalize();
+            hood.vertex(ring(k, radius, y), normal, [1.0; 4])
+        };
+        let [a, b] = [i, i + 1].map(|k| corner(k, 0.72, 0.0));
+        let [c, d] = [i + 1, i].map(|k| corner(k, 0.34, 0.62));
         hood.indices.extend([a, d, c, a, c, b]);
     }
     shop.put(hood.into_mesh(), &shade_material, foot * at(0.0, 2.6, 0.0));
     // Books.
-    for (i, (color, width, angle)) in [
-        (0x7b3f8c, 1.0, 0.2),
-        (0x2f8c7b, 0.86, -0.15),
-        (0xc2453d, 0.92, 0.45),
-    ]
-    .into_iter()
-    .enumerate()
-    {
+    for (i, color, width, angle) in [
+        (0.0, 0x7b3f8c, 1.0, 0.2),
+        (1.0, 0x2f8c7b, 0.86, -0.15),
+        (2.0, 0xc2453d, 0.92, 0.45),
+    ] {
         let cloth = shop.paint(color, 0.85);
-        shop.put(
-            Cuboid::new(width, 0.18, 0.66),
-            &cloth,
-            at(-1.0, 0.09 + 0.18 * i as f32, 2.15).with_rotation(Quat::from_rotation_y(angle)),
-        );
+        let turn = Quat::from_rotation_y(angle);
+        let place = at(-1.0, 0.09 + 0.18 * i, 2.15).with_rotation(turn);
+        shop.put(Cuboid::new(width, 0.18, 0.66), &cloth, place);
     }
 }
 
 fn room(shop: &mut Workshop) {
     let checks: Vec<u32> = (0..48)
-        .map(|i| {
-            if (i % 6 + i / 6) % 2 == 0 {
-                0xdcb987
-            } else {
-                0xcfa56c
-            }
-        })
+        .map(|i| [0xdcb987, 0xcfa56c][(i % 6 + i / 6) % 2])
         .collect();
     let boards = texels(shop.stage, 6, &checks);
     let floor = shop.textured(boards, 0.9);
@@ -291,39 +234,19 @@ fn room(shop: &mut Workshop) {
         let x = -5.1 + 1.7 * i as f32;
         let z = |k: i32| -3.0 + if k % 2 == 0 { 0.0 } else { 0.85 };
         let (z0, z1) = (z(i), z(i + 1));
-        let tone = if i % 2 == 0 {
-            color
-        } else {
-            shade(color, 0.93)
-        };
-        let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-        wall.polygon(
-            &[
-                p(x, 0.0, z0),
-                p(x + 1.7, 0.0, z1),
-                p(x + 1.7, 4.6, z1),
-                p(x, 4.6, z0),
-            ],
-            tone,
-        );
-        wall.polygon(
-            &[
-                p(x, 4.6, z0),
-                p(x + 1.7, 4.6, z1),
-                p(x + 1.7, 4.6, z1 - 0.15),
-                p(x, 4.6, z0 - 0.15),
-            ],
-            tone,
-        );
-        wall.polygon(
-            &[
-                p(x + 1.7, 0.0, z1 - 0.15),
-                p(x, 0.0, z0 - 0.15),
-                p(x, 4.6, z0 - 0.15),
-                p(x + 1.7, 4.6, z1 - 0.15),
-            ],
-            tone,
-        );
+        let tone = [color, shade(color, 0.93)][i as usize % 2];
+        let [left, right] = [(x, z0), (x + 1.7, z1)].map(|(x, z)| {
+            // From the foot in front over the top to the foot behind.
+            [(0.0, 0.0), (4.6, 0.0), (4.6, 0.15), (0.0, 0.15)]
+                .map(|(y, back)| Vec3::new(x, y, z - back))
+        });
+        for panel in [
+            [left[0], right[0], right[1], left[1]],
+            [left[1], right[1], right[2], left[2]],
+            [right[3], left[3], left[2], right[2]],
+        ] {
+            wall.polygon(&panel, tone);
+        }
     }
     let paper = shop.stage.matt();
     shop.put(wall.into_mesh(), &paper, Transform::IDENTITY);
@@ -342,43 +265,17 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     };
     let mut shop = Workshop { stage };
     room(&mut shop);
-    robot(
-        &mut shop,
-        at(0.35, 0.0, -0.6).with_rotation(Quat::from_rotation_y(-0.18)),
-    );
-    chick(
-        &mut shop,
-        at(-1.55, 0.0, 0.35).with_rotation(Quat::from_rotation_y(0.42)),
-    );
+    let turned = |at: Transform, angle| at.with_rotation(Quat::from_rotation_y(angle));
+    robot(&mut shop, turned(at(0.35, 0.0, -0.6), -0.18));
+    chick(&mut shop, turned(at(-1.55, 0.0, 0.35), 0.42));
     props(&mut shop);
 
-    stage.commands.spawn((
-        ScenePart,
-        DirectionalLight {
-            illuminance: 3000.0,
-            color: Color::srgb(1.0, 0.95, 0.86),
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
-        CascadeShadowConfigBuilder {
-            num_cascades: 1,
-            maximum_distance: 26.0,
-            ..default()
-        }
-        .build(),
-    ));
-    stage.commands.spawn((
-        ScenePart,
-        PointLight {
-            intensity: 240_000.0,
-            color: Color::srgb(1.0, 0.78, 0.45),
-            range: 7.0,
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_xyz(-3.1, 2.72, 0.5),
-    ));
+    let shadows = shadows_within(26.0);
+    let light = sunlight(sun, 3000.0, [1.0, 0.95, 0.86], shadows);
+    stage.commands.spawn(light);
+    let (bulb, warm) = (Vec3::new(-3.1, 2.72, 0.5), Color::srgb(1.0, 0.78, 0.45));
+    let light = lamplight(bulb, 240_000.0, warm, 7.0, true);
+    stage.commands.spawn(light);
     stage.commands.spawn((
         ScenePart,
         SpotLight {
@@ -392,21 +289,14 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         },
         Transform::from_xyz(5.0, 6.5, 4.6).looking_at(Vec3::new(0.4, 1.0, -0.8), Vec3::Y),
     ));
-    stage.commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.78, 0.84, 1.0),
-        brightness: 330.0,
-        ..default()
-    });
+    stage.ambient([0.78, 0.84, 1.0], 330.0);
 
     Vantage {
         eye: Vec3::new(0.6, 3.5, 11.0),
         target: Vec3::new(-0.05, 1.45, 0.0),
         fov: 32f32.to_radians(),
-        near: 0.1,
-        far: 1000.0,
         ortho: (Vec3::new(10.0, 9.0, 16.0), Vec3::new(0.0, 1.4, 0.0)),
         ortho_height: 8.5,
-        sky: stage.images.add(sky.image()),
-        sky_brightness: 1000.0,
+        ..stage.under(&sky)
     }
 }

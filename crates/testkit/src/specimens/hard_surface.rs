@@ -59,26 +59,17 @@ pub(super) fn parts() -> Vec<Part> {
         let (sin, cos) = (TAU * (i as f32 + 0.5) / 6.0).sin_cos();
         bolt(&mut flange_bolts, Vec3::new(0.29 * cos, 0.06, 0.29 * sin));
     }
-    let small = |position: Vec3, turn: Quat| {
-        Transform::from_translation(position)
-            .with_rotation(turn)
-            .with_scale(Vec3::splat(0.45))
+    let small = |position: [f32; 3], turn: Quat| {
+        let at = Transform::from_translation(position.into()).with_rotation(turn);
+        at.with_scale(Vec3::splat(0.45))
     };
+    let (about_x, about_z) = (Quat::from_rotation_x, Quat::from_rotation_z);
     let (mut bosses, mut bolts) = (Shape::default(), Shape::default());
     for place in [
         Transform::from_xyz(-0.35, HALF[1], 0.0),
-        small(
-            Vec3::new(-0.35, 0.0, HALF[2]),
-            Quat::from_rotation_x(FRAC_PI_2),
-        ),
-        small(
-            Vec3::new(-0.35, 0.0, -HALF[2]),
-            Quat::from_rotation_x(-FRAC_PI_2),
-        ),
-        small(
-            Vec3::new(HALF[0], 0.0, 0.0),
-            Quat::from_rotation_z(-FRAC_PI_2),
-        ),
+        small([-0.35, 0.0, HALF[2]], about_x(FRAC_PI_2)),
+        small([-0.35, 0.0, -HALF[2]], about_x(-FRAC_PI_2)),
+        small([HALF[0], 0.0, 0.0], about_z(-FRAC_PI_2)),
     ] {
         bosses.add(&boss, place);
         bolts.add(&flange_bolts, place);
@@ -148,12 +139,8 @@ fn counterbore(shape: &mut Shape, cell: [Vec3; 4], out: Vec3) {
             centre + (right * cos + up * sin) * radius - out * depth
         })
     };
-    let rims = [
-        octagon(0.27, 0.0),
-        octagon(0.27, 0.14),
-        octagon(0.15, 0.14),
-        octagon(0.15, 0.5),
-    ];
+    let rims = [(0.27, 0.0), (0.27, 0.14), (0.15, 0.14), (0.15, 0.5)]
+        .map(|(radius, depth)| octagon(radius, depth));
     let rim = rims[0];
     for k in 0..4 {
         let (corner, next) = (cell[k], cell[(k + 1) % 4]);

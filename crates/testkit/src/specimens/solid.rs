@@ -171,24 +171,10 @@ pub fn sculpt(subdivisions: u32, place: impl Fn(Vec3) -> Vec3) -> Shape {
         .iter()
         .map(|direction| place(Vec3::from(*direction).normalize()))
         .collect();
-    let indices: Vec<_> = sphere
-        .indices()
-        .expect("the sphere is indexed")
-        .iter()
-        .collect();
-    // The length of the cross product weights each triangle by its area.
-    let mut normals = vec![Vec3::ZERO; points.len()];
-    for corners in indices.chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|k| points[corners[k]]);
-        let normal = (b - a).cross(c - a);
-        for i in corners {
-            normals[*i] += normal;
-        }
-    }
+    let indices = sphere.indices().expect("the sphere is indexed");
+    let corners: Vec<u32> = indices.iter().map(|i| i as u32).collect();
+    let (triangles, _) = corners.as_chunks();
     let mut shape = Shape::default();
-    for (point, normal) in points.into_iter().zip(normals) {
-        shape.vertex(point, normal.normalize_or(Vec3::Y), PLAIN);
-    }
-    shape.indices.extend(indices.iter().map(|i| *i as u32));
+    shape.smooth(&points, triangles, PLAIN);
     shape
 }

@@ -32,11 +32,7 @@ pub(super) fn parts() -> Vec<Part> {
         step(&mut steps, i as f32);
     }
     let (mut frame, mut rails) = (Shape::default(), Shape::default());
-    frame.cuboid(
-        Vec3::new(-0.9, -0.1, BACK - 0.3),
-        Vec3::new(0.9, 0.0, 0.9),
-        PLAIN,
-    );
+    frame.cuboid([-0.9, -0.1, BACK - 0.3], [0.9, 0.0, 0.9], PLAIN);
     for side in [-1.0, 1.0] {
         stringer(&mut frame, side);
         railing(&mut rails, side * RAIL_X);
@@ -71,8 +67,8 @@ fn step(shape: &mut Shape, i: f32) {
     ];
     extrude(shape, &tread, Vec3::X * (2.0 * HALF_WIDTH));
     shape.cuboid(
-        Vec3::new(-HALF_WIDTH, floor - TREAD / 2.0, z - 0.02),
-        Vec3::new(HALF_WIDTH, top - TREAD / 2.0, z),
+        [-HALF_WIDTH, floor - TREAD / 2.0, z - 0.02],
+        [HALF_WIDTH, top - TREAD / 2.0, z],
         PLAIN,
     );
 }

@@ -26,11 +26,8 @@ fn cloth(p: Vec3) -> f32 {
     let middle = SHOULDER * Vec3::new(0.0, 1.0, 1.0);
     let across = bone(mirrored, (middle, SHOULDER), (0.4, 0.37));
     let chest = ellipsoid(p, Vec3::new(0.0, -2.75, -0.24), Vec3::new(1.0, 1.1, 0.62));
-    let neck = bone(
-        p,
-        (Vec3::new(0.0, -1.4, -0.24), Vec3::new(0.0, -2.0, -0.26)),
-        (0.36, 0.62),
-    );
+    let throat = (Vec3::new(0.0, -1.4, -0.24), Vec3::new(0.0, -2.0, -0.26));
+    let neck = bone(p, throat, (0.36, 0.62));
     let other = SHOULDER * Vec3::new(-1.0, 1.0, 1.0);
     let hanging = bone(p, (other, Vec3::new(-1.4, -3.6, 0.0)), (0.37, 0.3));
     let raised = bone(p, (SHOULDER, ELBOW), (0.37, 0.33));
@@ -109,34 +106,27 @@ pub fn cuff() -> Shape {
     shape
 }
 
-/// Fingers of the raised hand: from the knuckle to the tip, in units of the hand from its wrist.
-/// The palm faces +z, and the thumb is on the side of the head.
-const FINGERS: [([f32; 3], [f32; 3], [f32; 3], f32); 4] = [
-    (
-        [-0.19, 0.5, 0.02],
-        [-0.27, 0.74, 0.04],
-        [-0.31, 0.93, 0.06],
-        0.072,
-    ),
-    (
-        [-0.06, 0.54, 0.0],
-        [-0.085, 0.82, 0.02],
-        [-0.095, 1.04, 0.05],
-        0.075,
-    ),
-    (
-        [0.08, 0.52, 0.0],
-        [0.13, 0.78, 0.02],
-        [0.165, 0.98, 0.05],
-        0.072,
-    ),
-    (
-        [0.19, 0.45, 0.02],
-        [0.285, 0.65, 0.04],
-        [0.35, 0.81, 0.07],
-        0.063,
-    ),
+/// Fingers of the raised hand: knuckles, middles and tips, in units of the hand from its wrist, and
+/// the radii. The palm faces +z, and the thumb is on the side of the head.
+const KNUCKLES: [[f32; 3]; 4] = [
+    [-0.19, 0.5, 0.02],
+    [-0.06, 0.54, 0.0],
+    [0.08, 0.52, 0.0],
+    [0.19, 0.45, 0.02],
 ];
+const MIDDLES: [[f32; 3]; 4] = [
+    [-0.27, 0.74, 0.04],
+    [-0.085, 0.82, 0.02],
+    [0.13, 0.78, 0.02],
+    [0.285, 0.65, 0.04],
+];
+const TIPS: [[f32; 3]; 4] = [
+    [-0.31, 0.93, 0.06],
+    [-0.095, 1.04, 0.05],
+    [0.165, 0.98, 0.05],
+    [0.35, 0.81, 0.07],
+];
+const FINGER_RADII: [f32; 4] = [0.072, 0.075, 0.072, 0.063];
 
 const THUMB: [[f32; 3]; 3] = [[-0.14, 0.14, 0.05], [-0.34, 0.3, 0.13], [-0.44, 0.5, 0.14]];
 
@@ -145,11 +135,8 @@ pub fn hand() -> Shape {
     let (low, high) = (Vec3::new(-0.65, -0.4, -0.35), Vec3::new(0.55, 1.25, 0.4));
     surface(low, high, 0.022, |p| {
         let palm = ellipsoid(p, Vec3::new(0.0, 0.31, 0.0), Vec3::new(0.27, 0.31, 0.12));
-        let wrist = bone(
-            p,
-            (Vec3::new(0.02, -0.3, -0.02), Vec3::new(0.0, 0.12, 0.0)),
-            (0.15, 0.15),
-        );
+        let forearm = (Vec3::new(0.02, -0.3, -0.02), Vec3::new(0.0, 0.12, 0.0));
+        let wrist = bone(p, forearm, (0.15, 0.15));
         let ball = ellipsoid(p, Vec3::new(-0.13, 0.2, 0.08), Vec3::new(0.12, 0.17, 0.1));
         let mut hand = join(palm, wrist, 0.16);
         hand = join(hand, ball, 0.08);
@@ -157,8 +144,8 @@ pub fn hand() -> Shape {
         let thumb = bone(p, (a, b), (0.095, 0.08)).min(bone(p, (b, c), (0.08, 0.066)));
         hand = join(hand, thumb, 0.07);
         let mut fingers = f32::INFINITY;
-        for (knuckle, middle, tip, radius) in FINGERS {
-            let [a, b, c] = [knuckle, middle, tip].map(Vec3::from);
+        for (k, radius) in FINGER_RADII.into_iter().enumerate() {
+            let [a, b, c] = [KNUCKLES[k], MIDDLES[k], TIPS[k]].map(Vec3::from);
             let root = bone(p, (a - Vec3::Y * 0.12, b), (radius * 1.05, radius));
             let end = bone(p, (b, c), (radius, radius * 0.82));
             fingers = join(fingers, join(root, end, 0.03), 0.012);
@@ -200,11 +187,7 @@ fn tail_part(shape: &mut Shape, ends: (f32, f32), thickness: f32) {
     let at = |t: f32| ends.0 + (ends.1 - ends.0) * t;
     let out = |p: Vec3| Vec3::new(0.5 * (3.4 * p.x).sin(), 0.3 + 0.3 * (2.2 * p.x).cos(), 1.0);
     let size = |t: f32| {
-        let end = if (0.001..0.999).contains(&t) {
-            1.0
-        } else {
-            0.0
-        };
+        let end = f32::from((0.001..0.999).contains(&t));
         Vec2::new(0.17 + 0.15 * at(t).sqrt(), thickness) * end
     };
     lock(shape, |t| tail_path(at(t)), out, size);

@@ -173,18 +173,7 @@ pub fn strip(shape: &mut Shape, rows: u32, columns: u32, at: impl Fn(f32, f32) -
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    let mut normals = vec![Vec3::ZERO; points.len()];
-    for corners in &triangles {
-        let [a, b, c] = corners.map(|k| points[k as usize]);
-        for corner in corners {
-            normals[*corner as usize] += (b - a).cross(c - a);
-        }
-    }
-    let first = shape.positions.len() as u32;
-    for (point, normal) in points.into_iter().zip(normals) {
-        shape.vertex(point, normal.normalize_or(Vec3::Y), PLAIN);
-    }
-    (shape.indices).extend(triangles.as_flattened().iter().map(|k| first + k));
+    shape.smooth(&points, &triangles, PLAIN);
 }
 
 /// A strip along a path. Its section is an ellipse; `out` is the short axis, `size` is half of the

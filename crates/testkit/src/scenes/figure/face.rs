@@ -88,10 +88,8 @@ impl Brush<'_> {
 /// The upper edge of the eye, for a place across it from -1 (inner corner) to 1.
 fn upper(across: f32) -> Vec2 {
     let bow = (1.0 - across * across).max(0.0).powf(0.62);
-    EYE + Vec2::new(
-        EYE_SIZE.x * across,
-        0.035 * across + EYE_SIZE.y * bow * (1.0 + 0.1 * across),
-    )
+    let up = 0.035 * across + EYE_SIZE.y * bow * (1.0 + 0.1 * across);
+    EYE + Vec2::new(EYE_SIZE.x * across, up)
 }
 
 /// The lower edge.
@@ -111,26 +109,21 @@ pub struct Paint {
     pub shape: Shape,
 }
 
-fn both_sides(name: &'static str, lift: f32, draw: impl Fn(&mut Brush)) -> Paint {
+fn painted(name: &'static str, sides: &[f32], lift: f32, draw: impl Fn(&mut Brush)) -> Paint {
     let mut shape = Shape::default();
-    for side in [-1.0, 1.0] {
-        draw(&mut Brush {
-            shape: &mut shape,
-            side,
-            lift,
-        });
+    for &side in sides {
+        let shape = &mut shape;
+        draw(&mut Brush { shape, side, lift });
     }
     Paint { name, shape }
 }
 
+fn both_sides(name: &'static str, lift: f32, draw: impl Fn(&mut Brush)) -> Paint {
+    painted(name, &[-1.0, 1.0], lift, draw)
+}
+
 fn middle(name: &'static str, lift: f32, draw: impl Fn(&mut Brush)) -> Paint {
-    let mut shape = Shape::default();
-    draw(&mut Brush {
-        shape: &mut shape,
-        side: 1.0,
-        lift,
-    });
-    Paint { name, shape }
+    painted(name, &[1.0], lift, draw)
 }
 
 /// Open eyes.
@@ -189,23 +182,20 @@ fn lashes(brush: &mut Brush) {
     });
     let below = |u: f32| lower(0.3 + 0.72 * u) - Vec2::new(0.0, 0.004);
     brush.stroke(below, |u| 0.018 * (PI * (0.12 + 0.88 * u)).sin());
-    let fold = |u: f32| {
-        let edge = upper(-0.55 + 1.4 * u);
-        edge + Vec2::new(0.0, 0.062)
-    };
+    let fold = |u: f32| upper(-0.55 + 1.4 * u) + Vec2::new(0.0, 0.062);
     brush.stroke(fold, |u| 0.011 * (PI * u).sin());
 }
 
 /// Eyes that are closed: two bows, with lashes.
-pub fn closed_eyes() -> Vec<Paint> {
-    vec![both_sides("ink", 0.013, |brush| {
+pub fn closed_eyes() -> Paint {
+    both_sides("ink", 0.013, |brush| {
         let line = |u: f32| {
             let across = -1.0 + 2.1 * u;
             let sag = (1.0 - across * across).max(-0.2);
             EYE + Vec2::new(EYE_SIZE.x * across, -0.04 - 0.08 * sag)
         };
         brush.stroke(line, |u| 0.034 * (PI * (0.06 + 0.88 * u)).sin());
-    })]
+    })
 }
 
 /// Brows, mouth and the blush of the cheeks.

@@ -75,28 +75,12 @@ pub fn fringe() -> Shape {
 
 /// The long lock in front of an ear, with its root at the origin. `side`: 1 for +x.
 pub fn side_lock(side: f32) -> (Vec3, Shape) {
-    let on = |x: f32, y: f32, z: f32| Vec3::new(side * x, y, z);
     let root = above(side * 74.0, 46.0, 0.05);
     let mut shape = Shape::default();
-    let paths = [
-        (
-            [
-                on(1.02, 0.3, 0.3),
-                on(0.88, -0.45, 0.42),
-                on(0.6, -0.98, 0.5),
-            ],
-            0.17,
-        ),
-        (
-            [
-                on(1.06, 0.25, 0.08),
-                on(1.04, -0.5, 0.2),
-                on(0.78, -1.12, 0.26),
-            ],
-            0.19,
-        ),
-    ];
-    for ([a, b, c], width) in paths {
+    let front = [[1.02, 0.3, 0.3], [0.88, -0.45, 0.42], [0.6, -0.98, 0.5]];
+    let behind = [[1.06, 0.25, 0.08], [1.04, -0.5, 0.2], [0.78, -1.12, 0.26]];
+    for (points, width) in [(front, 0.17), (behind, 0.19)] {
+        let [a, b, c] = points.map(|[x, y, z]| Vec3::new(side * x, y, z));
         let path = curve([root, a, b, c].map(|p| p - root));
         let out = |p: Vec3| (p + root) * Vec3::new(1.0, 0.0, 0.8);
         lock(&mut shape, path, out, |t| pointed(t, width, 0.075));
@@ -128,17 +112,14 @@ pub fn back() -> Shape {
 pub fn cowlick() -> (Vec3, Shape) {
     let root = above(20.0, 84.0, 0.03);
     let mut shape = Shape::default();
-    let path = curve([
-        Vec3::new(0.0, -0.05, 0.0),
-        Vec3::new(0.03, 0.24, 0.02),
-        Vec3::new(0.2, 0.36, 0.06),
-        Vec3::new(0.42, 0.22, 0.12),
-    ]);
-    lock(
-        &mut shape,
-        path,
-        |_| Vec3::Y + Vec3::Z,
-        |t| pointed(t, 0.075, 0.045),
-    );
+    let points = [
+        [0.0, -0.05, 0.0],
+        [0.03, 0.24, 0.02],
+        [0.2, 0.36, 0.06],
+        [0.42, 0.22, 0.12],
+    ];
+    let path = curve(points.map(Vec3::from));
+    let (out, size) = (|_| Vec3::Y + Vec3::Z, |t| pointed(t, 0.075, 0.045));
+    lock(&mut shape, path, out, size);
     (root, shape)
 }

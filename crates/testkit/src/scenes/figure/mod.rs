@@ -8,16 +8,11 @@ mod hair;
 pub mod motion;
 mod shading;
 
-use bevy::{
-    light::{CascadeShadowConfigBuilder, NotShadowCaster},
-    prelude::*,
-};
+use bevy::{light::NotShadowCaster, prelude::*};
 use bevy_comics::{OutlineGroup, toon::MaterialName};
 
 use super::{
-    ScenePart, Stage, ToonPart, Vantage,
-    shape::{Shape, rgb},
-    sky::Sky,
+    ScenePart, Stage, ToonPart, Vantage, shadows_within, shape::Shape, sky::Sky, sunlight,
 };
 use motion::{Lids, Sway};
 
@@ -112,9 +107,7 @@ fn head(shop: &mut Workshop, figure: Entity) {
     for paint in face::eyes() {
         shop.paint(skin, paint, Some(Lids::Open));
     }
-    for paint in face::closed_eyes() {
-        shop.paint(skin, paint, Some(Lids::Closed));
-    }
+    shop.paint(skin, face::closed_eyes(), Some(Lids::Closed));
 
     for shape in [hair::cap(), hair::back(), hair::fringe()] {
         shop.put(head, "hair", shape);
@@ -166,7 +159,7 @@ fn hills(shop: &mut Workshop) {
     ] {
         let size = Vec3::new(1.5, 1.0, 1.0) * radius;
         let at = Vec3::new(x, y, z);
-        hills.blob(at, size, 48, |_| rgb(color), |_| 0.0);
+        hills.ellipsoid(at, size, 48, color);
     }
     let matt = shop.stage.matt();
     let mesh = shop.stage.meshes.add(hills.into_mesh());
@@ -191,39 +184,22 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     head(&mut shop, figure);
     body(&mut shop, figure);
     hills(&mut shop);
-    if let Some(looks) = &mut stage.looks {
-        let toon = ToonPart(shading::scene(looks));
+    if let Some(styles) = &mut stage.looks {
+        let toon = ToonPart(shading::scene(styles));
         stage.commands.entity(figure).insert(toon);
     }
 
-    let light = DirectionalLight {
-        illuminance: 3000.0,
-        color: Color::srgb(1.0, 0.96, 0.88),
-        shadow_maps_enabled: true,
-        ..default()
-    };
-    let cascades = CascadeShadowConfigBuilder {
-        num_cascades: 1,
-        maximum_distance: 11.0,
-        ..default()
-    };
-    let from = Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y);
-    (stage.commands).spawn((ScenePart, light, from, cascades.build()));
-    stage.commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.82, 0.86, 1.0),
-        brightness: 480.0,
-        ..default()
-    });
+    let shadows = shadows_within(11.0);
+    let light = sunlight(sun, 3000.0, [1.0, 0.96, 0.88], shadows);
+    stage.commands.spawn(light);
+    stage.ambient([0.82, 0.86, 1.0], 480.0);
 
     Vantage {
         eye: Vec3::new(0.2, -0.2, 7.75),
         target: Vec3::new(0.2, -0.27, 0.0),
         fov: 27f32.to_radians(),
-        near: 0.1,
-        far: 1000.0,
         ortho: (Vec3::new(2.5, 1.0, 8.0), Vec3::new(0.2, -0.45, 0.0)),
         ortho_height: 3.8,
-        sky: stage.images.add(sky.image()),
-        sky_brightness: 1000.0,
+        ..stage.under(&sky)
     }
 }

@@ -1,18 +1,18 @@
-//! The looks of the figure's materials, from files.
+//! The styles of the figure's materials, from files.
 
 use bevy::prelude::*;
 use bevy_comics::{ToonScene, toon::ToonShading};
 
-macro_rules! looks {
+macro_rules! files {
     ($($name:literal),*) => {
         [$(($name, include_str!(concat!("../../../../../assets/shading/", $name, ".toon.ron")))),*]
     };
 }
 
 /// Name and text of each file.
-const FILES: [(&str, &str); 6] = looks!["face", "skin", "hair", "iris", "paint", "cloth"];
+const FILES: [(&str, &str); 6] = files!["face", "skin", "hair", "iris", "paint", "cloth"];
 
-/// Materials, and the look of each.
+/// Materials, and the style of each.
 const STYLES: [(&str, &str); 15] = [
     ("face", "face"),
     ("blush", "face"),
@@ -32,15 +32,15 @@ const STYLES: [(&str, &str); 15] = [
 ];
 
 /// The figure with the toon material.
-pub fn scene(looks: &mut Assets<ToonShading>) -> ToonScene {
+pub fn scene(styles: &mut Assets<ToonShading>) -> ToonScene {
     let handles = FILES.map(|(name, text)| {
-        let look = ToonShading::from_ron(text).unwrap_or_else(|error| panic!("{name}: {error}"));
-        (name, looks.add(look))
+        let style = ToonShading::from_ron(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        (name, styles.add(style))
     });
     let mut scene = ToonScene::default();
-    for (material, look) in STYLES {
-        let found = handles.iter().find(|(name, _)| *name == look);
-        let (_, handle) = found.expect("a look of the figure");
+    for (material, style) in STYLES {
+        let found = handles.iter().find(|(name, _)| *name == style);
+        let (_, handle) = found.expect("a style of the figure");
         scene = scene.with_override(material, handle.clone());
     }
     scene
