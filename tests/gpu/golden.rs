@@ -118,7 +118,11 @@ fn check(scene: BuiltIn, count: usize) {
     let mut failed = Vec::new();
     for (name, style) in golden_styles(scene).into_iter().take(count) {
         let picture = studio.shoot_golden(name, &style);
-        failed.extend(failure(&references(scene, name), &picture, most_far_off(name)));
+        failed.extend(failure(
+            &references(scene, name),
+            &picture,
+            most_far_off(name),
+        ));
     }
     assert!(
         failed.is_empty(),
@@ -181,14 +185,25 @@ fn the_hatched_theatre_looks_as_it_did() {
 /// Every preset is compared in one scene, and every picture in the folder is compared.
 #[test]
 fn every_style_has_a_reference() {
-    let of_scene = |scene| golden_styles(scene).into_iter().map(move |(name, _)| (scene, name));
+    let of_scene = |scene| {
+        golden_styles(scene)
+            .into_iter()
+            .map(move |(name, _)| (scene, name))
+    };
     let styles: Vec<(BuiltIn, &str)> = BuiltIn::ALL.into_iter().flat_map(of_scene).collect();
     for preset in presets::ALL {
-        let count = styles.iter().filter(|(_, name)| *name == preset.name()).count();
+        let count = styles
+            .iter()
+            .filter(|(_, name)| *name == preset.name())
+            .count();
         assert_eq!(count, 1, "scenes with {preset}");
     }
-    let styles = styles.into_iter().chain([(BuiltIn::Theatre, "hatched-material")]);
-    let compared: BTreeSet<PathBuf> = styles.flat_map(|(scene, name)| references(scene, name)).collect();
+    let styles = styles
+        .into_iter()
+        .chain([(BuiltIn::Theatre, "hatched-material")]);
+    let compared: BTreeSet<PathBuf> = styles
+        .flat_map(|(scene, name)| references(scene, name))
+        .collect();
     for path in &compared {
         assert!(path.exists(), "{} is missing", path.display());
     }

@@ -177,14 +177,23 @@ fn the_tests_that_the_script_for_gpus_names_exist() {
     let program = std::env::current_exe().expect("the path of the tests");
     let output = Command::new(program).arg("--list").output();
     let list = String::from_utf8(output.expect("they start").stdout).expect("names");
-    let tests: Vec<&str> = list.lines().filter_map(|line| line.strip_suffix(": test")).collect();
+    let tests: Vec<&str> = list
+        .lines()
+        .filter_map(|line| line.strip_suffix(": test"))
+        .collect();
     let script = fs::read_to_string(source().with_file_name("scripts/gpu")).expect("the script");
     let code = script.lines().filter(|line| !line.trim().starts_with('#'));
     let words = code.flat_map(|line| line.split([' ', '(', ')']));
-    let names: Vec<&str> = words.filter(|word| word.contains("::") && !word.contains('"')).collect();
+    let names: Vec<&str> = words
+        .filter(|word| word.contains("::") && !word.contains('"'))
+        .collect();
     assert!(names.len() >= 10, "the check sees {names:?}");
     for name in names {
-        let is_named = |test: &&str| *test == name || (name.ends_with("::") && test.starts_with(name));
-        assert!(tests.iter().any(is_named), "scripts/gpu names {name}, which is no test");
+        let is_named =
+            |test: &&str| *test == name || (name.ends_with("::") && test.starts_with(name));
+        assert!(
+            tests.iter().any(is_named),
+            "scripts/gpu names {name}, which is no test"
+        );
     }
 }

@@ -4,8 +4,11 @@ use std::{fs, io::BufReader};
 
 use image::RgbImage;
 
-use super::{Gltf, Part, Shape, bounds, figure, files, render};
-use crate::{command_line::folder, prelude::*};
+use super::{Gltf, Part, Shape, bounds, figure, files};
+use crate::{
+    command_line::{folder, render},
+    prelude::*,
+};
 
 const GREEN: [f32; 3] = [0.1, 0.6, 0.1];
 const SIZE: (u32, u32) = (160, 120);
@@ -25,22 +28,8 @@ fn a_turntable_holds_its_framing_over_the_whole_turn() {
     // A bar beside the origin: broad from one side, narrow from the next.
     let bar = Part::new(Shape::Box, [3.0, 1.0, 0.0], [1.0, 0.15, 0.1], GREEN);
     Gltf::new(&[bar], 1.0, [0.0; 3]).write_glb(&folder.join("bar.glb"));
-    let arguments = [
-        "bar.glb",
-        "--size",
-        "160x120",
-        "--msaa",
-        "1",
-        "--frames",
-        "1",
-        "--style",
-        "none",
-        "--turntable",
-        "12",
-        "--out",
-        "turn",
-    ];
-    render(&folder, &arguments);
+    let arguments = "bar.glb --size 160x120 --msaa 1 --frames 1 --style none";
+    render(&folder, &format!("{arguments} --turntable 12 --out turn"));
     let frames = files(&folder.join("turn"));
     assert_eq!(frames.len(), 12);
     assert!(frames[11].ends_with("frame-011.png"), "{frames:?}");
@@ -80,22 +69,8 @@ fn a_turntable_is_an_animated_png_or_numbered_files() {
     let folder = folder("animation");
     Gltf::new(&figure(), 1.0, [0.0; 3]).write_glb(&folder.join("figure.glb"));
     let run = |out: &str| {
-        let arguments = [
-            "figure.glb",
-            "--size",
-            "48x64",
-            "--msaa",
-            "1",
-            "--frames",
-            "1",
-            "--style",
-            "none",
-            "--turntable",
-            "3",
-            "--out",
-            out,
-        ];
-        render(&folder, &arguments);
+        let arguments = "figure.glb --size 48x64 --msaa 1 --frames 1 --style none";
+        render(&folder, &format!("{arguments} --turntable 3 --out {out}"));
     };
     run("turn.png");
     let file = fs::File::open(folder.join("turn.png")).expect("turn.png");
@@ -124,18 +99,7 @@ fn a_turntable_is_an_animated_png_or_numbered_files() {
 fn sheet(name: &str, presets: &str, [columns, count]: [u32; 2]) -> [HashSet<Vec<u8>>; 2] {
     let folder = folder(name);
     Gltf::new(&figure(), 1.0, [0.0; 3]).write_glb(&folder.join("figure.glb"));
-    let arguments = [
-        "figure.glb",
-        "--size",
-        "72x48",
-        "--msaa",
-        "1",
-        "--frames",
-        "1",
-        presets,
-        "--out",
-        "s.png",
-    ];
+    let arguments = format!("figure.glb --size 72x48 --msaa 1 --frames 1 {presets} --out s.png");
     render(&folder, &arguments);
     let sheet = image::open(folder.join("s.png"))
         .expect("a sheet")
@@ -173,14 +137,7 @@ fn a_sheet_shows_the_model_in_every_preset_with_its_name() {
     let [pictures, labels] = sheet("sheet", "--presets", [6, count]);
     // The figures of the paper differ by thresholds that a plain model need not show.
     let least = count as usize - 4;
-    assert!(
-        pictures.len() >= least,
-        "{} different pictures",
-        pictures.len()
-    );
-    assert_eq!(
-        labels.len(),
-        count as usize,
-        "every preset has its own name"
-    );
+    let seen = pictures.len();
+    assert!(seen >= least, "{seen} different pictures");
+    assert_eq!(labels.len(), count as usize, "names of presets");
 }

@@ -3,7 +3,7 @@
 use super::effects::GROUPS;
 
 /// Samples, HDR, projection, renderer, anti-aliasing, area, effects.
-pub const FACTORS: usize = 7;
+const FACTORS: usize = 7;
 
 /// The level of every factor.
 pub type Levels = [usize; FACTORS];
@@ -48,22 +48,22 @@ pub struct Row {
     pub effects: usize,
 }
 
-pub const VIEWS: [View; 4] = [
+const VIEWS: [View; 4] = [
     View::Perspective,
     View::Orthographic,
     View::ClipPlane,
     View::OffCentre,
 ];
-pub const ANTI_ALIASING: [AntiAliasing; 4] = [
+const ANTI_ALIASING: [AntiAliasing; 4] = [
     AntiAliasing::Off,
     AntiAliasing::Fxaa,
     AntiAliasing::Smaa,
     AntiAliasing::Taa,
 ];
-pub const AREAS: [Area; 3] = [Area::Whole, Area::Part, Area::SmallMainPass];
+const AREAS: [Area; 3] = [Area::Whole, Area::Part, Area::SmallMainPass];
 
 /// How many levels each factor has; `samples` are the sample counts of the adapter.
-pub fn sizes(samples: &[u32]) -> Levels {
+fn sizes(samples: &[u32]) -> Levels {
     [
         samples.len(),
         2,
@@ -108,7 +108,7 @@ impl Row {
 }
 
 /// Two factors with a level each; the first factor has the smaller index.
-pub type Pair = [(usize, usize); 2];
+type Pair = [(usize, usize); 2];
 
 /// Level 0 is that of the plainest camera, which excludes nothing.
 const PLAIN: Levels = [0; FACTORS];
@@ -121,7 +121,7 @@ fn with(mut levels: Levels, set: &[(usize, usize)]) -> Levels {
 }
 
 /// All pairs that the engine supports, those of the last factor first.
-pub fn allowed_pairs(samples: &[u32]) -> Vec<Pair> {
+fn allowed_pairs(samples: &[u32]) -> Vec<Pair> {
     let sizes = sizes(samples);
     let mut pairs = Vec::new();
     for second in (1..FACTORS).rev() {
