@@ -2,8 +2,7 @@
 
 use super::{
     Variant, check,
-    covering::{Choice, covering, definitions, has, has_any},
-    subsets,
+    covering::{definitions, has, has_any, rows},
 };
 
 /// Everything that the tests of this file compose.
@@ -11,73 +10,55 @@ pub fn variants() -> Vec<Variant> {
     [finding(), walking(), completing(), settling(), drawing()].concat()
 }
 
-fn add(all: &mut Vec<Variant>, file: &'static str, names: &[&'static str]) {
-    all.push((file, definitions(names)));
+/// A file with each of these texts as its definitions.
+fn each(file: &'static str, texts: &[&'static str]) -> Vec<Variant> {
+    let words = |text: &&'static str| text.split_whitespace().collect::<Vec<_>>();
+    texts
+        .iter()
+        .map(|text| (file, definitions(&words(text))))
+        .collect()
 }
 
 /// Rows with every pair, for one file.
 fn pairs(
     file: &'static str,
-    lists: &[&[Choice]],
+    lists: &[&'static str],
     resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
 ) -> Vec<Variant> {
-    let rows = covering(lists, resolved).rows;
-    rows.iter().map(|row| (file, definitions(row))).collect()
+    rows(lists, resolved)
+        .into_iter()
+        .map(|row| (file, row))
+        .collect()
 }
 
 /// What lines are along: the kinds of a view, and last those of marked objects.
-const KINDS: &[Choice] = &[
-    &[],
-    &["SILHOUETTES"],
-    &["CREASES"],
-    &["OBJECT_EDGES"],
-    &["SILHOUETTES", "CREASES"],
-    &["SILHOUETTES", "OBJECT_EDGES"],
-    &["CREASES", "OBJECT_EDGES"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES"],
-    &["CREASES", "LEDGES"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES", "LEDGES"],
-    &["CREASES", "SECTIONS"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES", "SECTIONS"],
-    &[
-        "SILHOUETTES",
-        "CREASES",
-        "OBJECT_EDGES",
-        "LEDGES",
-        "SECTIONS",
-    ],
-    &["MARKS", "SILHOUETTES", "OBJECT_EDGES"],
-    &[
-        "MARKS",
-        "SILHOUETTES",
-        "OBJECT_EDGES",
-        "MULTISAMPLED_PICTURE",
-    ],
-];
+const KINDS: &str = "
+    | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES
+    | CREASES OBJECT_EDGES | SILHOUETTES CREASES OBJECT_EDGES
+    | CREASES LEDGES | SILHOUETTES CREASES OBJECT_EDGES LEDGES
+    | CREASES SECTIONS | SILHOUETTES CREASES OBJECT_EDGES SECTIONS
+    | SILHOUETTES CREASES OBJECT_EDGES LEDGES SECTIONS
+    | MARKS SILHOUETTES OBJECT_EDGES | MARKS SILHOUETTES OBJECT_EDGES MULTISAMPLED_PICTURE";
 
 /// What cracks are found by. Without compute shaders, lines are not completed.
 fn finding() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         KINDS,
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["FADING"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[&[], &["COMPLETED"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[
-            &[],
-            &["ABSTRACT_LINES"],
-            &["ABSTRACT_LINES", "OBJECT_DEPTHS"],
-        ],
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| FADING",
+        "| VISIBLE_RANGE",
+        "| COMPLETED",
+        "| OBJECT_STYLES",
+        "| ABSTRACT_LINES | ABSTRACT_LINES OBJECT_DEPTHS",
     ];
-    const FAITHFUL: &[&[Choice]] = &[
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["FADING", "VISIBLE_RANGE"]],
-        &[&[], &["FAITHFUL_SILHOUETTES"]],
-        &[&[], &["FAITHFUL_CREASES", "NORMALS"]],
-        &[&[], &["OBJECT_STYLES"]],
+    const FAITHFUL: &[&str] = &[
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| FADING VISIBLE_RANGE",
+        "| FAITHFUL_SILHOUETTES",
+        "| FAITHFUL_CREASES NORMALS",
+        "| OBJECT_STYLES",
     ];
     fn by_fragments(mut names: Vec<&'static str>) -> Vec<&'static str> {
         names.retain(|name| !matches!(*name, "COMPLETED" | "LEDGES" | "OBJECT_DEPTHS"));
@@ -124,19 +105,13 @@ fn found(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// The search for blocks with cracks, with jumps of the depth map, or with both.
 fn walking() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         KINDS,
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["BRIDGED"]],
-        &[
-            &[],
-            &["JUMPS", "MAP_FLAGS=0"],
-            &["JUMPS", "MAP_FLAGS=1"],
-            &["JUMPS", "MAP_FLAGS=2"],
-            &["JUMPS", "MAP_FLAGS=3"],
-        ],
-        &[&[], &["VISIBLE_RANGE"]],
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| BRIDGED",
+        "| JUMPS MAP_FLAGS=0 | JUMPS MAP_FLAGS=1 | JUMPS MAP_FLAGS=2 | JUMPS MAP_FLAGS=3",
+        "| VISIBLE_RANGE",
     ];
     pairs("lines/walk.wgsl", LISTS, walked)
 }
@@ -171,65 +146,54 @@ fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// What links, joins, keeps and extends lines.
 fn completing() -> Vec<Variant> {
-    let mut all = Vec::new();
-    let of_columns: [&[&str]; 6] = [
-        &[],
-        &["BLOCKS"],
-        &["BLOCKS", "COMPLETED"],
-        &["BLOCKS", "COMPLETED", "SMOOTH"],
-        &["BLOCKS", "COMPLETED", "VARIED"],
-        &["BLOCKS", "COMPLETED", "SMOOTH", "VARIED"],
+    const STORES: &[&str] = &[
+        "",
+        "BLOCKS",
+        "BLOCKS COMPLETED",
+        "BLOCKS COMPLETED SMOOTH",
+        "BLOCKS COMPLETED VARIED",
+        "BLOCKS COMPLETED SMOOTH VARIED",
     ];
-    for defs in of_columns {
-        add(&mut all, "lines/columns.wgsl", defs);
-    }
-    for last in subsets(&["LAST"]) {
-        add(&mut all, "lines/link.wgsl", &last);
-    }
-    add(&mut all, "lines/join.wgsl", &[]);
-    add(&mut all, "lines/bridge.wgsl", &[]);
-    add(&mut all, "lines/tiles.wgsl", &[]);
-    add(&mut all, "lines/tile.wgsl", &[]);
-    let motions: [&[&str]; 3] = [&[], &["MOTION", "DEPTH"], &["MOTION", "DEPTH", "OBLIQUE"]];
-    for motion in motions {
-        add(&mut all, "lines/persist.wgsl", motion);
-    }
-    for varied in subsets(&["VARIED", "BRIDGED"]) {
-        let defs = [&["BLOCKS", "SMOOTH"][..], &varied[..]].concat();
-        add(&mut all, "lines/ends.wgsl", &defs);
-    }
-    all
+    [
+        each("lines/columns.wgsl", STORES),
+        each("lines/link.wgsl", &["", "LAST"]),
+        each("lines/join.wgsl", &[""]),
+        each("lines/bridge.wgsl", &[""]),
+        each("lines/tiles.wgsl", &[""]),
+        each("lines/tile.wgsl", &[""]),
+        each(
+            "lines/persist.wgsl",
+            &["", "MOTION DEPTH", "MOTION DEPTH OBLIQUE"],
+        ),
+        pairs(
+            "lines/ends.wgsl",
+            &["BLOCKS SMOOTH", "| VARIED", "| BRIDGED"],
+            |names| names,
+        ),
+    ]
+    .concat()
 }
 
 /// What leaves out cracks and makes lines smooth, wide and faint.
 fn settling() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
-        &[&[], &["SMOOTH"], &["SMOOTH", "FOLDS"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["BRIDGED"]],
-        &[&[], &["LEDGES"]],
-        &[&[], &["RIMS"]],
-        &[&[], &["KIND_WEIGHT"], &["KIND_WEIGHT", "OBJECT_IDS"]],
-        &[&[], &["LIGHT_WEIGHT"]],
-        &[&[], &["WIDTH_MAP"]],
-        &[&[], &["PERSPECTIVE_WEIGHT"]],
-        &[&[], &["NIB_WEIGHT"]],
-        &[&[], &["TAPER_WEIGHT"]],
-        &[&[], &["BUDGET"]],
-        &[&[], &["FOG"]],
-        &[&[], &["IN_FOCUS"]],
-        &[
-            &[],
-            &["IN_LAYERS"],
-            &["IN_LAYERS", "DEPTH_BORDERS"],
-            &["IN_LAYERS", "OBJECT_DEPTHS"],
-        ],
-        &[
-            &[],
-            &["ABSTRACT_CREASES"],
-            &["ABSTRACT_CREASES", "OBJECT_DEPTHS"],
-        ],
-        &[&[], &["VISIBLE_RANGE"]],
+    const LISTS: &[&str] = &[
+        "| SMOOTH | SMOOTH FOLDS",
+        "| OBLIQUE",
+        "| BRIDGED",
+        "| LEDGES",
+        "| RIMS",
+        "| KIND_WEIGHT | KIND_WEIGHT OBJECT_IDS",
+        "| LIGHT_WEIGHT",
+        "| WIDTH_MAP",
+        "| PERSPECTIVE_WEIGHT",
+        "| NIB_WEIGHT",
+        "| TAPER_WEIGHT",
+        "| BUDGET",
+        "| FOG",
+        "| IN_FOCUS",
+        "| IN_LAYERS | IN_LAYERS DEPTH_BORDERS | IN_LAYERS OBJECT_DEPTHS",
+        "| ABSTRACT_CREASES | ABSTRACT_CREASES OBJECT_DEPTHS",
+        "| VISIBLE_RANGE",
     ];
     pairs("lines/settle.wgsl", LISTS, settled)
 }
@@ -269,45 +233,43 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// What draws ink, reads samples, and remembers.
 fn drawing() -> Vec<Variant> {
-    const STROKES: &[&[Choice]] = &[
-        &[&[], &["OBJECT_STYLES"]],
-        &[&[], &["SURFACE"], &["SURFACE", "INWARD"]],
-        &[&[], &["BOIL"]],
-        &[&[], &["TAPER"]],
-        &[&[], &["SPREAD"]],
-        &[&[], &["STREAKS"]],
+    const STROKES: &[&str] = &[
+        "| OBJECT_STYLES",
+        "| SURFACE | SURFACE INWARD",
+        "| BOIL",
+        "| TAPER",
+        "| SPREAD",
+        "| STREAKS",
     ];
-    const LISTS: &[&[Choice]] = &[
-        &[&[], &["NEIGHBOURS"], &["COLUMNS"]],
-        &[
-            &[],
-            &["BLOCKS"],
-            &["BLOCKS", "COMPLETED"],
-            &["BLOCKS", "COMPLETED", "SMOOTH"],
-        ],
-        &[&[], &["VARIED"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[&[], &["SURFACE"], &["SURFACE", "INWARD"]],
-        &[&[], &["BRIDGED"]],
-        &[&[], &["BOIL"]],
-        &[&[], &["SPREAD"]],
-        &[&[], &["STREAKS"]],
+    const LISTS: &[&str] = &[
+        "| NEIGHBOURS | COLUMNS",
+        "| BLOCKS | BLOCKS COMPLETED | BLOCKS COMPLETED SMOOTH",
+        "| VARIED",
+        "| OBJECT_STYLES",
+        "| SURFACE | SURFACE INWARD",
+        "| BRIDGED",
+        "| BOIL",
+        "| SPREAD",
+        "| STREAKS",
     ];
-    let mut all = pairs("lines/draw.wgsl", LISTS, drawn);
-    all.extend(pairs("lines/strokes.wgsl", STROKES, with_ids));
-    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
-        let defs = [&["DEPTH", "MULTISAMPLED"][..], &view[..]].concat();
-        add(&mut all, "lines/resolve.wgsl", &defs);
-    }
-    for stored in [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]] {
-        let defs = [&["OBJECT_STYLES"][..], stored].concat();
-        add(&mut all, "lines/marks.wgsl", &defs);
-    }
-    for view in subsets(&["OBLIQUE"]) {
-        let defs = [&["DEPTH"][..], &view[..]].concat();
-        add(&mut all, "lines/remember.wgsl", &defs);
-    }
-    all
+    const RESOLVED: &[&str] = &[
+        "DEPTH MULTISAMPLED",
+        "| OBLIQUE",
+        "| NORMALS",
+        "| OBJECT_IDS",
+        "| WIDTH_MAP",
+    ];
+    const STORED: &str = "| STORED_SRGB | STORED_OKLAB";
+    [
+        pairs("lines/draw.wgsl", LISTS, drawn),
+        pairs("lines/strokes.wgsl", STROKES, with_ids),
+        pairs("lines/resolve.wgsl", RESOLVED, |names| names),
+        pairs("lines/marks.wgsl", &["OBJECT_STYLES", STORED], |names| {
+            names
+        }),
+        each("lines/remember.wgsl", &["DEPTH", "DEPTH OBLIQUE"]),
+    ]
+    .concat()
 }
 
 fn with_ids(mut names: Vec<&'static str>) -> Vec<&'static str> {

@@ -2,7 +2,7 @@
 
 use super::{
     Definitions,
-    covering::{Choice, covering, definitions, fewest, has},
+    covering::{fewest, has, rows},
     effects::{self, Modes, flag},
     flags,
     fused::of_pass,
@@ -18,18 +18,17 @@ pub fn variants() -> Vec<Definitions> {
 /// that draw the means over boxes or the numbers that it reads, and earlier ones, which have the
 /// settings of the effect but not the effect.
 fn divided() -> Vec<Definitions> {
-    const FORMS: &[&[Choice]] = &[
-        &[&[], &["CONTINUED"]],
-        &[&[], &["LAYER"]],
-        &[&[], &["INSIDE"]],
-        &[&[], &["FINISH"]],
-        &[&[], &["MULTISAMPLED"]],
-        &[&[], &["UNSTYLED_COLORS"]],
-        &[&[], &["UNSTYLED_PRINT"]],
+    const FORMS: &[&str] = &[
+        "| CONTINUED",
+        "| LAYER",
+        "| INSIDE",
+        "| FINISH",
+        "| MULTISAMPLED",
+        "| UNSTYLED_COLORS",
+        "| UNSTYLED_PRINT",
     ];
     let ids = flags(&["OBJECT_STYLES", "OBJECT_IDS", "UNSTYLED"]);
-    let forms = covering(FORMS, |names| names).rows;
-    let forms = forms.iter().map(|names| definitions(names)).collect();
+    let forms = rows(FORMS, |names| names);
     let effects = effects::all().iter().flat_map(passes_of).collect();
     let all = product(&[effects, forms]);
     all.iter().map(|parts| of_pass(&[parts, &ids])).collect()
@@ -77,53 +76,25 @@ fn reaches(pixels: usize) -> Definitions {
     steps.chain([flag("BOX_REACH".into())]).collect()
 }
 
-fn rows(
-    lists: &[&[Choice]],
-    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
-) -> Vec<Definitions> {
-    let found = covering(lists, resolved);
-    let of_row = |names: &Vec<&'static str>| of_pass(&[&definitions(names)]);
-    found.rows.iter().map(of_row).collect()
-}
-
 /// Passes that are blended over the picture: all of their effects draw over it.
 fn overlays() -> Vec<Definitions> {
-    const LISTS: &[&[Choice]] = &[
-        &[
-            &["OUTLINES", "LINES"],
-            &["CONTOURS"],
-            &["OUTLINES", "LINES", "CONTOURS"],
-            &["FOCUS"],
-            &["FOCUS", "OUTLINES", "LINES", "CONTOURS"],
-        ],
-        &[
-            &["CONTOURS_OPERATOR=0"],
-            &["CONTOURS_OPERATOR=1"],
-            &["CONTOURS_OPERATOR=2"],
-            &["CONTOURS_OPERATOR=3"],
-        ],
-        &[
-            &[],
-            &["CONTOURS_WHOLE"],
-            &["CONTOURS_WHOLE", "CONTOURS_SINGLE_RING"],
-        ],
-        &[&[], &["CONTOURS_STEADY"]],
-        &[&["FOCUS_PARALLEL=0"], &["FOCUS_PARALLEL=1"]],
+    const LISTS: &[&str] = &[
+        "OUTLINES LINES | CONTOURS | OUTLINES LINES CONTOURS | FOCUS | FOCUS OUTLINES LINES CONTOURS",
+        "CONTOURS_OPERATOR=0 | CONTOURS_OPERATOR=1 | CONTOURS_OPERATOR=2 | CONTOURS_OPERATOR=3",
+        "| CONTOURS_WHOLE | CONTOURS_WHOLE CONTOURS_SINGLE_RING",
+        "| CONTOURS_STEADY",
+        "FOCUS_PARALLEL=0 | FOCUS_PARALLEL=1",
         // The styles of lines, and objects that colour effects leave alone.
-        &[&[], &["OBJECT_STYLES"], &["OBJECT_STYLES", "OBJECT_IDS"]],
-        &[&[], &["INSIDE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["MULTISAMPLED"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[
-            &["MAP_FLAGS=0"],
-            &["MAP_FLAGS=1"],
-            &["MAP_FLAGS=2"],
-            &["MAP_FLAGS=3"],
-        ],
+        "| OBJECT_STYLES | OBJECT_STYLES OBJECT_IDS",
+        "| INSIDE",
+        "| SAME_SIZE",
+        "| MULTISAMPLED",
+        "| OBLIQUE",
+        "| VISIBLE_RANGE",
+        "MAP_FLAGS=0 | MAP_FLAGS=1 | MAP_FLAGS=2 | MAP_FLAGS=3",
     ];
-    rows(LISTS, overlay)
+    let rows = rows(LISTS, overlay);
+    rows.iter().map(|row| of_pass(&[row])).collect()
 }
 
 fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
@@ -153,33 +124,24 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// All pixels, before tiles with all effects: without those effects that change only tiles.
 fn bases() -> Vec<Definitions> {
-    const LISTS: &[&[Choice]] = &[
-        &[
-            &["SKETCH"],
-            &["SKETCH", "CONTOURS"],
-            &["CONTOURS", "TONE_BANDS"],
-            &["CONTOURS", "OUTLINES"],
-        ],
+    const LISTS: &[&str] = &[
+        "SKETCH | SKETCH CONTOURS | CONTOURS TONE_BANDS | CONTOURS OUTLINES",
         // An effect of a game may not know how far it reads lines.
-        &[&[], &["WITHOUT_LINES"]],
-        &[&[], &["SKETCH_FADES"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[
-            &[],
-            &["LINE_OWNERS"],
-            &["LINE_OWNERS", "IN_LAYERS"],
-            &["LINE_OWNERS", "IN_LAYERS", "DEPTH_BORDERS"],
-        ],
-        &[&[], &["CONTINUED"]],
-        &[&[], &["FINISH"]],
-        &[&[], &["INSIDE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["MULTISAMPLED"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[&[], &["STORED_SRGB"], &["STORED_OKLAB"]],
+        "| WITHOUT_LINES",
+        "| SKETCH_FADES",
+        "| OBJECT_STYLES",
+        "| LINE_OWNERS | LINE_OWNERS IN_LAYERS | LINE_OWNERS IN_LAYERS DEPTH_BORDERS",
+        "| CONTINUED",
+        "| FINISH",
+        "| INSIDE",
+        "| SAME_SIZE",
+        "| MULTISAMPLED",
+        "| OBLIQUE",
+        "| VISIBLE_RANGE",
+        "| STORED_SRGB | STORED_OKLAB",
     ];
-    rows(LISTS, base)
+    let rows = rows(LISTS, base);
+    rows.iter().map(|row| of_pass(&[row])).collect()
 }
 
 fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
