@@ -23,7 +23,7 @@ pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The README and every page that is written by hand, with their paths.
+/// The README and every page, with their paths.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = fs::read_dir(root.join("docs")).expect("the pages");

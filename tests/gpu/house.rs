@@ -158,18 +158,6 @@ fn no_modules_import_each_other_in_a_circle() {
     assert_eq!(circle(&graph), None, "{graph:#?}");
 }
 
-/// Services that effects share import no effect.
-#[test]
-fn services_import_nothing_of_the_effects() {
-    let graph = imports();
-    for service in ["depth", "lines", "objects"] {
-        let imported = &graph[service];
-        for above in ["effect", "effects", "style", "view", "inspector"] {
-            assert!(!imported.contains(above), "{service} imports {above}");
-        }
-    }
-}
-
 /// The test binary does not fail for a name that matches no test: `scripts/gpu` would test less than it
 /// says, or run what it means to leave out.
 #[test]
