@@ -142,7 +142,7 @@ mod reference {
 
     use std::collections::BTreeMap;
 
-    use bevy::reflect::{NamedField, TypeInfo, Typed, VariantInfo};
+    use bevy::reflect::{NamedField, TypeInfo, Typed, enums::VariantInfo};
     use bevy_comics::{
         ComicStyle, DepthMap,
         effect::{EffectRegistry, EffectType, FieldRange},

@@ -192,14 +192,12 @@ const ALONE: &str = "WEBGL2_ALONE";
 /// Runs a test of this file in a process of its own, in which no device has storage buffers. The engine looks
 /// at one device in a process (`bevy_render::storage_buffers_are_unsupported`, Bevy 0.19.1), so that
 /// apps with and without them cannot be in the same one.
-fn alone(test: fn()) {
+fn alone(name: &str, api: wgpu::Backends) {
     if std::env::var_os(ALONE).is_some() {
-        return test();
+        return check_webgl2(api);
     }
-    let thread = std::thread::current();
-    let name = thread.name().expect("that of the test");
     let output = Command::new(std::env::current_exe().expect("the test"))
-        .args(["--exact", "--nocapture", "--test-threads=2", name])
+        .args(["--exact", "--nocapture", &format!("open_gl::{name}")])
         .env(ALONE, "yes")
         .output()
         .expect("it starts");
@@ -250,10 +248,12 @@ fn check_webgl2(api: wgpu::Backends) {
 
 #[test]
 fn every_effect_is_drawn_within_the_limits_of_webgl2() {
-    alone(|| check_webgl2(wgpu::Backends::GL));
+    let name = "every_effect_is_drawn_within_the_limits_of_webgl2";
+    alone(name, wgpu::Backends::GL);
 }
 
 #[test]
 fn every_effect_is_drawn_with_vulkan_within_the_limits_of_webgl2() {
-    alone(|| check_webgl2(wgpu::Backends::VULKAN));
+    let name = "every_effect_is_drawn_with_vulkan_within_the_limits_of_webgl2";
+    alone(name, wgpu::Backends::VULKAN);
 }

@@ -149,7 +149,10 @@ impl Small {
         material: StandardMaterial,
         at: Transform,
     ) -> Entity {
-        let material = self.world().resource_mut::<Assets<_>>().add(material);
+        let material = self
+            .world()
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(material);
         self.put_shared(mesh, MeshMaterial3d(material), at)
     }
 
@@ -359,7 +362,9 @@ pub fn spawn_objects(world: &mut World) {
         ),
         (&ground, Color::srgb(0.8, 0.7, 0.5), Transform::IDENTITY),
     ] {
-        let material = world.resource_mut::<Assets<_>>().add(unlit(color));
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(unlit(color));
         world.spawn((Object, Mesh3d(mesh.clone()), MeshMaterial3d(material), at));
     }
 }

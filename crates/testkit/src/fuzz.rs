@@ -128,9 +128,10 @@ pub fn check_command_lines<T>(
 }
 
 /// What text may contain that is wrong, or just right, between spaces.
-const WORDS: &str = "NaN inf -inf 1e999 -0.0 0 -1 4294967296 18446744073709551616 1e-45 3.4028236e38 \
-    true None Some( () ((((((((((((((((( )))) [[[[[[[[ ] { } \" ' \\u{0} \\ r#\" \"# /* */ // \
-    \u{feff} \u{1f600} \u{202e} : , # #ffffffff version:2, version:3, .. ../ /etc/ file:// C:\\";
+const WORDS: &str = "NaN inf -inf 1e999 -0.0 0 -1 4294967296 18446744073709551616 1e-45 \
+    3.4028236e38 true None Some( () ((((((((((((((((( )))) [[[[[[[[ ] { } \" ' \\u{0} \\ r#\" \"# /* \
+    */ // \u{feff} \u{1f600} \u{202e} : , # #ffffffff version:2, version:3, .. ../ /etc/ file:// \
+    C:\\";
 
 /// Texts that are made of right ones.
 pub struct Texts {

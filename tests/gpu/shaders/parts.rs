@@ -79,7 +79,8 @@ fn reaches(pixels: usize) -> Definitions {
 /// Passes that are blended over the picture: all of their effects draw over it.
 fn overlays() -> Vec<Definitions> {
     const LISTS: &[&str] = &[
-        "OUTLINES LINES | CONTOURS | OUTLINES LINES CONTOURS | FOCUS | FOCUS OUTLINES LINES CONTOURS",
+        "OUTLINES LINES | CONTOURS | OUTLINES LINES CONTOURS \
+         | FOCUS | FOCUS OUTLINES LINES CONTOURS",
         "CONTOURS_OPERATOR=0 | CONTOURS_OPERATOR=1 | CONTOURS_OPERATOR=2 | CONTOURS_OPERATOR=3",
         "| CONTOURS_WHOLE | CONTOURS_WHOLE CONTOURS_SINGLE_RING",
         "| CONTOURS_STEADY",
