@@ -1,6 +1,6 @@
 //! Rows of choices that together have every pair of choices that can be.
 
-use super::Definitions;
+use super::{Definitions, Variant};
 use crate::prelude::*;
 
 /// One way of something, with its definitions. One that ends in `=` and a number has that value.
@@ -41,6 +41,18 @@ pub fn rows(
     let lists: Vec<&[Choice]> = lists.iter().map(|line| list(line)).collect();
     let found = covering(&lists, resolved).rows;
     found.iter().map(|row| definitions(row)).collect()
+}
+
+/// Rows with every pair, for one file.
+pub fn pairs(
+    file: &'static str,
+    lists: &[&'static str],
+    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
+) -> Vec<Variant> {
+    rows(lists, resolved)
+        .into_iter()
+        .map(|row| (file, row))
+        .collect()
 }
 
 /// Whether one of these texts is `name`.

@@ -2,7 +2,7 @@
 
 use super::{
     Variant, check,
-    covering::{definitions, has, has_any, rows},
+    covering::{definitions, has, has_any, pairs},
 };
 
 /// Everything that the tests of this file compose.
@@ -16,18 +16,6 @@ fn each(file: &'static str, texts: &[&'static str]) -> Vec<Variant> {
     texts
         .iter()
         .map(|text| (file, definitions(&words(text))))
-        .collect()
-}
-
-/// Rows with every pair, for one file.
-fn pairs(
-    file: &'static str,
-    lists: &[&'static str],
-    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
-) -> Vec<Variant> {
-    rows(lists, resolved)
-        .into_iter()
-        .map(|row| (file, row))
         .collect()
 }
 

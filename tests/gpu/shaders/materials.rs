@@ -6,7 +6,7 @@ use bevy_comics_testkit::wgsl::Library;
 
 use super::{
     Variant,
-    covering::{has, rows},
+    covering::{has, pairs},
     shader,
 };
 use crate::{prelude::*, toon_shaders::ALWAYS};
@@ -37,8 +37,7 @@ fn ink() -> Vec<Variant> {
          | TONEMAP_IN_SHADER TONEMAP_METHOD_TONY_MC_MAPFACE",
         "| DISTANCE_FOG",
     ];
-    let rows = rows(LISTS, in_main_pass).into_iter();
-    rows.map(|row| ("motion_lines/ink.wgsl", row)).collect()
+    pairs("motion_lines/ink.wgsl", LISTS, in_main_pass)
 }
 
 /// Transparent meshes that write depth, with the definitions of the engine's prepass. Materials without
@@ -54,9 +53,7 @@ fn transparent() -> Vec<Variant> {
         "| VERTEX_COLORS",
         "| VISIBILITY_RANGE_DITHER",
     ];
-    let rows = rows(LISTS, in_prepass).into_iter();
-    rows.map(|row| ("objects/transparent/transparent.wgsl", row))
-        .collect()
+    pairs("objects/transparent/transparent.wgsl", LISTS, in_prepass)
 }
 
 fn in_main_pass(mut names: Vec<&'static str>) -> Vec<&'static str> {
