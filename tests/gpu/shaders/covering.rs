@@ -43,6 +43,15 @@ pub fn rows(
     found.iter().map(|row| definitions(row)).collect()
 }
 
+/// A file with each of these texts as its definitions.
+pub fn each(file: &'static str, texts: &[&'static str]) -> Vec<Variant> {
+    let words = |text: &&'static str| text.split_whitespace().collect::<Vec<_>>();
+    texts
+        .iter()
+        .map(|text| (file, definitions(&words(text))))
+        .collect()
+}
+
 /// Rows with every pair, for one file.
 pub fn pairs(
     file: &'static str,
@@ -96,6 +105,7 @@ pub fn cover(
     sizes: &[usize],
     counts: impl Fn(&[usize]) -> Vec<bool>,
 ) -> (Vec<Vec<usize>>, Vec<Pair>) {
+    assert!(sizes.len() > 1, "one factor has no pairs");
     let mut missing = all_pairs(sizes);
     let mut random = Random::new(1);
     let (mut rows, mut never) = (Vec::new(), Vec::new());

@@ -2,21 +2,12 @@
 
 use super::{
     Variant, check,
-    covering::{definitions, has, has_any, pairs},
+    covering::{each, has, has_any, pairs},
 };
 
 /// Everything that the tests of this file compose.
 pub fn variants() -> Vec<Variant> {
     [finding(), walking(), completing(), settling(), drawing()].concat()
-}
-
-/// A file with each of these texts as its definitions.
-fn each(file: &'static str, texts: &[&'static str]) -> Vec<Variant> {
-    let words = |text: &&'static str| text.split_whitespace().collect::<Vec<_>>();
-    texts
-        .iter()
-        .map(|text| (file, definitions(&words(text))))
-        .collect()
 }
 
 /// What lines are along: the kinds of a view, and last those of marked objects.

@@ -2,7 +2,7 @@
 
 use super::{
     Variant, check,
-    covering::{definitions, pairs},
+    covering::{definitions, each, pairs},
     subsets,
 };
 
@@ -42,12 +42,11 @@ fn objects() -> Vec<Variant> {
         | TOLERANT TOLERANT_MULTISAMPLED SAMPLE_SHADING";
     let same = |names| names;
     [
-        pairs("objects/depths.wgsl", &["| VISIBLE_RANGE"], same),
-        pairs("objects/depth_test/count.wgsl", &["| MULTISAMPLED"], same),
-        pairs(
+        each("objects/depths.wgsl", &["", "VISIBLE_RANGE"]),
+        each("objects/depth_test/count.wgsl", &["", "MULTISAMPLED"]),
+        each(
             "objects/transparent/copy_normals.wgsl",
-            &["| MULTISAMPLED | MULTISAMPLED SAMPLE_SHADING"],
-            same,
+            &["", "MULTISAMPLED", "MULTISAMPLED SAMPLE_SHADING"],
         ),
         // `objects/items.rs` builds both.
         pairs("objects/ids.wgsl", &[WIDTHS, DEPTHS], same),
