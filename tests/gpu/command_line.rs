@@ -9,7 +9,8 @@ use std::{
 };
 
 use bevy_comics_testkit::reference::range;
-use serde_json::Value;
+use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+use serde_json::{Value, json};
 
 use crate::prelude::*;
 
@@ -65,13 +66,36 @@ pub fn example(name: &'static str) -> PathBuf {
     programs.next_back().expect("the example").into()
 }
 
-/// The output of `render`, started in a folder.
-pub fn run(folder: &Path, arguments: &[&str]) -> Output {
+/// The output of `render`, started in a folder, with these arguments between spaces.
+pub fn run(folder: &Path, arguments: &str) -> Output {
     Command::new(example("render"))
-        .args(arguments)
+        .args(arguments.split_whitespace())
         .current_dir(folder)
         .output()
         .expect("it starts")
+}
+
+/// The same; it must end well. Gives what it wrote to stderr.
+pub fn render(folder: &Path, arguments: &str) -> String {
+    let output = run(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    let is_right = output.status.success() && !errors.contains("panicked");
+    assert!(is_right, "{arguments}: {errors}");
+    errors
+}
+
+/// What a dump in `d` says of its frame.
+pub fn frame(folder: &Path) -> Value {
+    let text = fs::read(folder.join("d/frame.json")).expect("frame.json");
+    serde_json::from_slice(&text).expect("JSON")
+}
+
+/// The name and the values of the first channel of a picture of a dump in `d`.
+pub fn dumped(folder: &Path, name: &str) -> (String, FlatSamples) {
+    let image = read_first_flat_layer_from_file(folder.join("d").join(name)).expect(name);
+    let channel = image.layer_data.channel_data.list.into_iter().next();
+    let channel = channel.expect("a channel");
+    (channel.name.to_string(), channel.sample_data)
 }
 
 /// A folder for one test.
@@ -84,54 +108,43 @@ pub fn folder(name: &str) -> PathBuf {
 #[test]
 fn what_cannot_be_done_is_one_line_that_says_what_can() {
     let folder = folder("errors");
-    fs::write(
-        folder.join("broken.comic.ron"),
-        "(version: 3, contours: (thresh: 1))",
-    )
-    .expect("written");
-    fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
+    let write = |name, text| fs::write(folder.join(name), text).expect("written");
+    write("broken.comic.ron", "(version: 3, contours: (thresh: 1))");
+    write("broken.gltf", "{ not json");
     for (arguments, says) in [
         (
-            &["moonscape"][..],
+            "moonscape",
             "mountains, teapot, theatre, village, figure, street, hall",
         ),
-        (&["--style", "nope"], "saturday-morning, graphic-novel"),
-        (&["--material", "wood"], "possible are standard, toon"),
-        (
-            &["--style", "missing.comic.ron"],
-            "cannot read missing.comic.ron",
-        ),
-        (&["--style", "broken.comic.ron"], "line 1"),
-        (&["--size", "0x10"], "WxH"),
-        (&["--size", "999999x10"], "this adapter draws"),
-        (&["--msaa", "3"], "1, 2, 4, 8"),
-        (&["--camera", "1,2,3"], "EX,EY,EZ,TX,TY,TZ"),
-        (&["--camera", "1,2,3,nan,0,0"], "finite"),
-        (&["--near", "-1"], "positive"),
-        (&["--near", "5", "--far", "2"], "near must be smaller"),
-        (&["--ortho", "inf"], "finite"),
-        (&["--frames", "0"], "1 to 100000"),
-        (&["--out", "picture.bmp"], ".png"),
-        (&["--turntable", "1"], "2 to 720"),
-        (&["--presets", "--out", "sheet"], ".png"),
-        (&["--presets", "--style", "noir"], "exclude each other"),
-        (&["--polish"], "--help"),
-        (&["missing.glb"], "cannot read missing.glb"),
-        (&["broken.gltf"], "is no glTF model"),
+        ("--style nope", "saturday-morning, graphic-novel"),
+        ("--material wood", "possible are standard, toon"),
+        ("--style missing.comic.ron", "cannot read missing.comic.ron"),
+        ("--style broken.comic.ron", "line 1"),
+        ("--size 0x10", "WxH"),
+        ("--size 999999x10", "this adapter draws"),
+        ("--msaa 3", "1, 2, 4, 8"),
+        ("--camera 1,2,3", "EX,EY,EZ,TX,TY,TZ"),
+        ("--camera 1,2,3,nan,0,0", "finite"),
+        ("--near -1", "positive"),
+        ("--near 5 --far 2", "near must be smaller"),
+        ("--ortho inf", "finite"),
+        ("--frames 0", "1 to 100000"),
+        ("--out picture.bmp", ".png"),
+        ("--turntable 1", "2 to 720"),
+        ("--presets --out sheet", ".png"),
+        ("--presets --style noir", "exclude each other"),
+        ("--polish", "--help"),
+        ("missing.glb", "cannot read missing.glb"),
+        ("broken.gltf", "is no glTF model"),
     ] {
         let output = run(&folder, arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {errors}");
         // The driver and the engine may print warnings.
-        let ours: Vec<_> = errors
-            .lines()
-            .filter(|line| line.starts_with("render: "))
-            .collect();
-        assert!(
-            ours.len() == 1 && ours[0].contains(says),
-            "{arguments:?}: {errors}"
-        );
-        assert!(!errors.contains("panicked"), "{arguments:?}: {errors}");
+        let ours = errors.lines().filter(|line| line.starts_with("render: "));
+        let is_said = matches!(&ours.collect::<Vec<_>>()[..], [line] if line.contains(says));
+        let is_right = is_said && !errors.contains("panicked");
+        assert!(is_right, "{arguments}: {errors}");
     }
     fs::remove_dir_all(folder).expect("the folder goes");
 }
@@ -139,82 +152,40 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
 #[test]
 fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
     let folder = folder("dump");
-    let arguments = [
-        "teapot",
-        "--style",
-        "crimson-dusk",
-        "--size",
-        "64x48",
-        "--msaa",
-        "1",
-        "--frames",
-        "4",
-        "--hdr",
-        "--out",
-        "p.png",
-        "--dump",
-        "d",
-    ];
-    let output = run(&folder, &arguments);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert_eq!(
-        image::image_dimensions(folder.join("p.png")).expect("a PNG"),
-        (64, 48)
-    );
+    let style = "teapot --style crimson-dusk --hdr";
+    let rest = "--size 64x48 --msaa 1 --frames 4 --out p.png --dump d";
+    render(&folder, &format!("{style} {rest}"));
+    let size = image::image_dimensions(folder.join("p.png"));
+    assert_eq!(size.expect("a PNG"), (64, 48));
 
-    let frame: Value =
-        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
-            .expect("JSON");
+    let frame = frame(&folder);
     assert_eq!(frame["projection"], "perspective");
     assert_eq!(frame["style"]["name"], "Crimson dusk");
-    let ran: Vec<_> = frame["passes_run"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .filter_map(Value::as_str)
-        .collect();
-    assert!(
-        ran.contains(&"stylize") && ran.contains(&"contours"),
-        "{ran:?}"
-    );
+    let ran = frame["passes_run"].as_array().expect("a list");
+    for pass in ["stylize", "contours"] {
+        assert!(ran.iter().any(|name| name == pass), "{pass}: {ran:?}");
+    }
     assert_eq!(frame["passes_left_out"]["desaturation"], "not requested");
     for key in ["near", "far", "adapter", "clip_from_view"] {
         assert!(!frame[key].is_null(), "{key} is missing");
     }
 
     // The range is the scan of the depth that was written.
-    let depth = exr::prelude::read_first_flat_layer_from_file(folder.join("d/depth.exr"))
-        .expect("depth.exr");
-    let channel = &depth.layer_data.channel_data.list[0];
-    assert_eq!(channel.name.to_string(), "Z");
-    let exr::prelude::FlatSamples::F32(values) = &channel.sample_data else {
+    let (name, FlatSamples::F32(depth)) = dumped(&folder, "depth.exr") else {
         panic!("depth is not f32")
     };
-    assert_eq!(values.len(), 64 * 48);
-    let scan = range::scan(values.iter().copied()).expect("geometry");
-    let bits: Vec<_> = frame["range"]["raw_bits"]
-        .as_array()
-        .expect("bits")
-        .iter()
-        .filter_map(Value::as_u64)
-        .collect();
-    assert_eq!(bits, scan.map(u64::from));
+    assert_eq!((name.as_str(), depth.len()), ("Z", 64 * 48));
+    let scan = range::scan(depth.into_iter()).expect("geometry");
+    assert_eq!(frame["range"]["raw_bits"], json!(scan));
 
     // The pass changed the picture.
-    let rgba = |name: &str| {
-        let image =
-            exr::prelude::read_first_flat_layer_from_file(folder.join("d").join(name)).expect(name);
-        let channels = &image.layer_data.channel_data.list;
-        channels
-            .iter()
-            .flat_map(|c| c.sample_data.values_as_f32())
-            .collect::<Vec<f32>>()
-    };
-    assert_ne!(rgba("input.exr"), rgba("output.exr"));
+    let [before, after] = ["input.exr", "output.exr"].map(|name| {
+        let image = read_first_flat_layer_from_file(folder.join("d").join(name)).expect(name);
+        let channels = image.layer_data.channel_data.list.into_iter();
+        let values = channels.flat_map(|c| c.sample_data.values_as_f32().collect::<Vec<_>>());
+        values.collect::<Vec<f32>>()
+    });
+    assert_ne!(before, after);
     assert!(!folder.join("d/ids.exr").exists(), "no line wants ids");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
@@ -222,89 +193,20 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
 #[test]
 fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     let folder = folder("dump-ids");
-    let arguments = [
-        "theatre", "--size", "64x48", "--msaa", "1", "--frames", "1", "--out", "p.png", "--dump",
-        "d",
-    ];
-    let output = run(&folder, &arguments);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let frame: Value =
-        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
-            .expect("JSON");
+    let arguments = "theatre --size 64x48 --msaa 1 --frames 1 --out p.png --dump d";
+    render(&folder, arguments);
+    let frame = frame(&folder);
     assert_eq!(frame["material"], "toon");
     for kind in ["directional", "point", "spot"] {
         assert_eq!(frame["lights"][kind], 1, "{kind}");
     }
-    let ids =
-        exr::prelude::read_first_flat_layer_from_file(folder.join("d/ids.exr")).expect("ids.exr");
-    let channel = &ids.layer_data.channel_data.list[0];
-    assert_eq!(channel.name.to_string(), "id");
-    let exr::prelude::FlatSamples::U32(values) = &channel.sample_data else {
+    let (name, FlatSamples::U32(ids)) = dumped(&folder, "ids.exr") else {
         panic!("ids are not whole numbers")
     };
-    let different: BTreeSet<u32> = values.iter().copied().collect();
+    assert_eq!(name, "id");
+    let different: BTreeSet<u32> = ids.into_iter().collect();
     assert!(different.len() > 10, "{} objects", different.len());
     assert!(folder.join("d/normal.exr").exists());
-    fs::remove_dir_all(folder).expect("the folder goes");
-}
-
-/// A triangle 0.01 units across, with no light and no camera.
-const TRIANGLE: &str = r#"{
-  "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-  "buffers": [{"uri": "triangle.bin", "byteLength": 36}],
-  "bufferViews": [{"buffer": 0, "byteLength": 36}],
-  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-    "min": [0, 0, 0], "max": [0.01, 0.01, 0]}]
-}"#;
-
-#[test]
-fn a_gltf_file_is_framed_and_lit() {
-    let folder = folder("model");
-    fs::write(folder.join("triangle.gltf"), TRIANGLE).expect("written");
-    let corners = [[0.0f32, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0]];
-    let bytes: Vec<u8> = corners
-        .iter()
-        .flatten()
-        .flat_map(|x| x.to_le_bytes())
-        .collect();
-    fs::write(folder.join("triangle.bin"), bytes).expect("written");
-    let output = run(
-        &folder,
-        &[
-            "triangle.gltf",
-            "--size",
-            "64x64",
-            "--out",
-            "p.png",
-            "--style",
-            "none",
-            "--dump",
-            "d",
-        ],
-    );
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let frame: Value =
-        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
-            .expect("JSON");
-    // Framed: its distance is about its width. Lit: it is not black.
-    let near = frame["range"]["distance"][0]
-        .as_f64()
-        .expect("it is in view");
-    assert!(near > 0.005 && near < 0.1, "{near}");
-    let picture = image::open(folder.join("p.png"))
-        .expect("a picture")
-        .to_rgb8();
-    let middle = picture.get_pixel(28, 34).0;
-    assert!(middle.iter().any(|c| *c > 40), "{middle:?}");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 

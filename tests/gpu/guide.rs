@@ -1,4 +1,4 @@
-//! The README and the pages of `docs/` are correct.
+//! The README and the pages of `docs/` lead somewhere, and are right about style files.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The README and every page that is written by hand, with their paths.
+/// The README and every page, with their paths.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = fs::read_dir(root.join("docs")).expect("the pages");
@@ -44,8 +44,6 @@ fn links(page: &str) -> impl Iterator<Item = &str> {
         .filter(|link| !link.is_empty() && !link.contains("://"))
 }
 
-/// Links lead to files, and commands name examples. No page runs an example in another profile, and no
-/// command of the README builds with other features: both would build the engine once more.
 #[test]
 fn links_and_commands_of_the_pages_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -56,57 +54,18 @@ fn links_and_commands_of_the_pages_lead_somewhere() {
             assert!(folder.join(link).exists(), "{}: {link}", path.display());
             linked += 1;
         }
-        for (_, rest) in page
-            .match_indices("--example ")
-            .map(|at| page.split_at(at.0))
-        {
-            let name = rest["--example ".len()..]
-                .split([' ', '`', '\n', ':'])
-                .next();
-            let source = root.join("examples").join(name.expect("a name"));
-            assert!(
-                source.with_extension("rs").exists() || source.join("main.rs").exists(),
-                "{}: there is no example {name:?}",
-                path.display()
-            );
+        for command in page.split("--example ").skip(1) {
+            let name = command.split([' ', '`', '\n', ':']).next().expect("a name");
+            let source = root.join("examples").join(name);
+            let exists = source.with_extension("rs").exists() || source.join("main.rs").exists();
+            assert!(exists, "{}: there is no example {name}", path.display());
             commands += 1;
-        }
-        for line in page.lines().filter(|line| line.contains("--example ")) {
-            assert!(!line.contains("--release"), "{}: {line}", path.display());
         }
     }
     assert!(
         linked > 50 && commands > 15,
         "{linked} links, {commands} commands"
     );
-    let readme = fs::read_to_string(root.join("README.md")).expect("the README");
-    for flag in ["--features", "--release", "--manifest-path"] {
-        assert!(
-            !readme.contains(flag),
-            "the README builds the engine anew: {flag}"
-        );
-    }
-}
-
-/// Pictures with a palette look speckled, as if the renderer were noisy.
-#[test]
-fn pictures_of_the_pages_are_in_true_colour() {
-    let mut pictures = 0;
-    for (path, page) in pages() {
-        for link in links(&page).filter(|link| link.ends_with(".png")) {
-            let file = path.parent().expect("a folder").join(link);
-            let bytes = fs::read(&file).expect("a picture");
-            // The header's colour type: 2 is RGB, 6 is RGB with alpha.
-            assert!(
-                bytes[24] == 8 && matches!(bytes[25], 2 | 6),
-                "{} has colour type {}",
-                file.display(),
-                bytes[25]
-            );
-            pictures += 1;
-        }
-    }
-    assert!(pictures > 10, "{pictures} pictures");
 }
 
 /// Every step of the page is a style, and draws another picture than the last.
@@ -181,23 +140,22 @@ fn the_reference_of_the_format_is_that_of_the_types() {
 mod reference {
     use std::fmt::Write;
 
-    use bevy::reflect::{NamedField, TypeInfo, Typed};
+    use std::collections::BTreeMap;
+
+    use bevy::reflect::{NamedField, TypeInfo, Typed, enums::VariantInfo};
     use bevy_comics::{
-        Abstraction, BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers,
-        DepthMap, DepthMapping, Desaturation, Focus, Halftone, Misregistration, Outlines, Paint,
-        Sketch, ToneBands,
-        depth::{RangeSmoothing, ReductionMethod},
+        ComicStyle, DepthMap,
         effect::{EffectRegistry, EffectType, FieldRange},
-        effects::{
-            ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle,
-            Granularity, HalftoneMode, HarmonyCurve, HarmonyMode, LayerBorders, PaintKernel,
-            ScreenAnchor, ScreenSampling, ScreenShape,
-        },
-        lines::{
-            Creases, LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges,
-            Silhouettes,
-        },
     };
+
+    /// The types with sections of their own, in their order. Those of other effects follow.
+    const FIRST: &str = "\
+        DepthMap DepthMapping RangeSmoothing ReductionMethod ToneBands Equations Desaturation \
+        Colorization ColorizationMode Abstraction ColorHarmony HarmonyMode HarmonyCurve DepthLayers \
+        DepthLayer Granularity LayerBorders Paint PaintKernel Focus FocusAt FocusStyle \
+        Misregistration Halftone HalftoneMode ScreenShape ScreenSampling ScreenAnchor BlackFlats \
+        Contours ContourOperator Outlines Silhouettes Creases ObjectEdges LineResponse LineWeight \
+        LineBoil LineColor LineFog Sketch";
 
     const HEAD: &str = "\
 # The format of style files
@@ -308,8 +266,31 @@ This page is made from the types by a test, which fails where the two differ.
         }
     }
 
-    fn section<T: Typed>(page: &mut String) {
-        section_of(T::type_info(), page);
+    type Types = BTreeMap<&'static str, &'static TypeInfo>;
+
+    /// Adds a type and those of its fields, by name.
+    fn add_types(info: &'static TypeInfo, types: &mut Types) {
+        if types
+            .insert(info.type_path_table().short_path(), info)
+            .is_some()
+        {
+            return;
+        }
+        let fields: Vec<Option<&TypeInfo>> = match info {
+            TypeInfo::Struct(info) => info.iter().map(NamedField::type_info).collect(),
+            TypeInfo::Enum(info) => {
+                let inner = info.iter().flat_map(|variant| match variant {
+                    VariantInfo::Struct(inner) => inner.iter().map(NamedField::type_info).collect(),
+                    VariantInfo::Tuple(inner) => inner.iter().map(|f| f.type_info()).collect(),
+                    VariantInfo::Unit(_) => Vec::new(),
+                });
+                inner.collect()
+            }
+            _ => Vec::new(),
+        };
+        for field in fields.into_iter().flatten() {
+            add_types(field, types);
+        }
     }
 
     fn section_of(info: &'static TypeInfo, page: &mut String) {
@@ -367,47 +348,14 @@ This page is made from the types by a test, which fails where the two differ.
         let mut page = HEAD.to_owned();
         let effects = EffectRegistry::built_in().types();
         style(&mut page, &effects);
-        section::<DepthMap>(&mut page);
-        section::<DepthMapping>(&mut page);
-        section::<RangeSmoothing>(&mut page);
-        section::<ReductionMethod>(&mut page);
-        section::<ToneBands>(&mut page);
-        section::<Equations>(&mut page);
-        section::<Desaturation>(&mut page);
-        section::<Colorization>(&mut page);
-        section::<ColorizationMode>(&mut page);
-        section::<Abstraction>(&mut page);
-        section::<ColorHarmony>(&mut page);
-        section::<HarmonyMode>(&mut page);
-        section::<HarmonyCurve>(&mut page);
-        section::<DepthLayers>(&mut page);
-        section::<DepthLayer>(&mut page);
-        section::<Granularity>(&mut page);
-        section::<LayerBorders>(&mut page);
-        section::<Paint>(&mut page);
-        section::<PaintKernel>(&mut page);
-        section::<Focus>(&mut page);
-        section::<FocusAt>(&mut page);
-        section::<FocusStyle>(&mut page);
-        section::<Misregistration>(&mut page);
-        section::<Halftone>(&mut page);
-        section::<HalftoneMode>(&mut page);
-        section::<ScreenShape>(&mut page);
-        section::<ScreenSampling>(&mut page);
-        section::<ScreenAnchor>(&mut page);
-        section::<BlackFlats>(&mut page);
-        section::<Contours>(&mut page);
-        section::<ContourOperator>(&mut page);
-        section::<Outlines>(&mut page);
-        section::<Silhouettes>(&mut page);
-        section::<Creases>(&mut page);
-        section::<ObjectEdges>(&mut page);
-        section::<LineResponse>(&mut page);
-        section::<LineWeight>(&mut page);
-        section::<LineBoil>(&mut page);
-        section::<LineColor>(&mut page);
-        section::<LineFog>(&mut page);
-        section::<Sketch>(&mut page);
+        let mut types = Types::new();
+        add_types(DepthMap::type_info(), &mut types);
+        for effect in &effects {
+            add_types((effect.type_info)(), &mut types);
+        }
+        for name in FIRST.split_whitespace() {
+            section_of(types[name], &mut page);
+        }
         for effect in effects {
             let info = (effect.type_info)();
             let name = info.type_path_table().short_path();

@@ -2,7 +2,7 @@
 //! in pictures of half its width and height.
 
 use bevy::{
-    ecs::system::RunSystemOnce,
+    ecs::{query::QueryFilter, system::RunSystemOnce},
     light::{PointLight, SpotLight},
 };
 use bevy_comics_testkit::scenes::{ScenePart, Stage, Vantage};
@@ -36,23 +36,22 @@ const MARGIN: f64 = 0.01;
 /// The lights of a scene.
 type Lit = Or<(With<DirectionalLight>, With<PointLight>, With<SpotLight>)>;
 
+fn despawn<F: QueryFilter>(world: &mut World) {
+    let mut query = world.query_filtered::<Entity, F>();
+    for entity in query.iter(world).collect::<Vec<_>>() {
+        world.despawn(entity);
+    }
+}
+
 /// Replaces the scene by another. As in the report its materials are unlit, so that only lines
 /// change the picture; lights, which would cost shadows, are removed.
 fn show(small: &mut Small, scene: BuiltIn) -> Vantage {
     let world = small.world();
-    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
-    let parts: Vec<Entity> = parts.iter(world).collect();
-    for part in parts {
-        world.despawn(part);
-    }
+    despawn::<(With<ScenePart>, Without<ChildOf>)>(world);
     let vantage = world
         .run_system_once(move |mut stage: Stage| stage.spawn(scene))
         .expect("the stage is there");
-    let mut lights = world.query_filtered::<Entity, Lit>();
-    let lights: Vec<Entity> = lights.iter(world).collect();
-    for light in lights {
-        world.despawn(light);
-    }
+    despawn::<Lit>(world);
     let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
     for (_, material) in materials.iter_mut() {
         material.unlit = true;
@@ -102,13 +101,6 @@ fn lines_follow_edges(scenes: &[(BuiltIn, [f64; 2])]) {
         let name = scene.name();
         let found = [scores.missed(), scores.wrong()];
         let fragments = scores.fragments();
-        let [recall, precision] = found.map(|errors| 1.0 - errors);
-        println!(
-            "{name}: recall {recall:.4}, same rule {:.4}, precision {precision:.4}, F1 {:.4}, \
-             fragments {fragments:.2}",
-            1.0 - rule.missed(),
-            2.0 / (1.0 / recall + 1.0 / precision)
-        );
         assert!(scores.wanted > 300, "{name}: {scores:?}");
         for (found, reported) in found.into_iter().zip(reported) {
             let most = SIZE_EFFECT * reported + MARGIN;

@@ -136,9 +136,8 @@ impl Small {
     /// Removes every object of the scene.
     pub fn clear(&mut self) {
         let world = self.world();
-        let mut query = world.query_filtered::<Entity, With<Object>>();
-        let objects: Vec<Entity> = query.iter(world).collect();
-        for object in objects {
+        let mut objects = world.query_filtered::<Entity, With<Object>>();
+        for object in objects.iter(world).collect::<Vec<_>>() {
             world.despawn(object);
         }
     }
@@ -201,9 +200,8 @@ impl Small {
     }
 
     pub fn ran(&self, stage: ComicsStage) -> bool {
-        self.headless
-            .app
-            .world()
+        let world = self.headless.app.world();
+        world
             .resource::<ComicsDiagnostics>()
             .ran(self.camera, stage)
     }
@@ -217,12 +215,8 @@ impl Small {
     }
 
     fn view(&self) -> Entity {
-        self.headless
-            .app
-            .world()
-            .get::<RenderEntity>(self.camera)
-            .expect("extracted")
-            .id()
+        let view = self.headless.app.world().get::<RenderEntity>(self.camera);
+        view.expect("extracted").id()
     }
 
     pub fn render_world(&self) -> &World {
@@ -346,36 +340,31 @@ impl CameraProjection for Reshaped {
 pub struct Object;
 
 pub fn spawn_objects(world: &mut World) {
-    let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
-    let ground = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Plane3d::default().mesh().size(9.0, 9.0));
-    let mut material = |color: Color| {
-        world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(unlit(color))
-    };
-    let [red, green, grey, sand] = [
-        Color::srgb(0.85, 0.2, 0.15),
-        Color::srgb(0.15, 0.6, 0.3),
-        Color::srgb(0.5, 0.5, 0.5),
-        Color::srgb(0.8, 0.7, 0.5),
-    ]
-    .map(&mut material);
-    for (mesh, material, at) in [
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    let cube = meshes.add(Cuboid::default());
+    let ground = meshes.add(Plane3d::default().mesh().size(9.0, 9.0));
+    let turned = Quat::from_rotation_y(0.5);
+    for (mesh, color, at) in [
         (
             &cube,
-            red,
-            Transform::from_xyz(-0.6, 0.5, 1.2).with_rotation(Quat::from_rotation_y(0.5)),
+            Color::srgb(0.85, 0.2, 0.15),
+            Transform::from_xyz(-0.6, 0.5, 1.2).with_rotation(turned),
         ),
         (
             &cube,
-            green,
+            Color::srgb(0.15, 0.6, 0.3),
             Transform::from_xyz(1.1, 0.9, -0.9).with_scale(Vec3::splat(1.6)),
         ),
-        (&cube, grey, Transform::from_xyz(-1.9, 0.6, -2.6)),
-        (&ground, sand, Transform::IDENTITY),
+        (
+            &cube,
+            Color::srgb(0.5, 0.5, 0.5),
+            Transform::from_xyz(-1.9, 0.6, -2.6),
+        ),
+        (&ground, Color::srgb(0.8, 0.7, 0.5), Transform::IDENTITY),
     ] {
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(unlit(color));
         world.spawn((Object, Mesh3d(mesh.clone()), MeshMaterial3d(material), at));
     }
 }

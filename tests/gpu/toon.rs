@@ -7,7 +7,8 @@ use bevy::{
 };
 
 use crate::{
-    hatched_material::{covers, light_from, mean, plain, tone},
+    hatched_material::{covers, light_from, plain, tone},
+    hatching::mean,
     prelude::*,
     ramp::{differ, put, room},
 };
@@ -439,8 +440,8 @@ fn strokes_of_the_page_are_redrawn_at_their_rate() {
         ..default()
     };
     let mut small = room(UVec2::splat(160), 0.0);
-    light_from(&mut small, Transform::IDENTITY, Vec3::Z, 0.3);
-    light_from(&mut small, Transform::IDENTITY, -Vec3::Z, 0.6);
+    light_from(&mut small, Vec3::Z, 0.3);
+    light_from(&mut small, -Vec3::Z, 0.6);
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
     put(&mut small, wall, &light, Transform::IDENTITY);
     let (got, want) = (mean(&covers(&mut small)), tone(&strokes, 1.0 / 3.0));

@@ -198,20 +198,14 @@ impl Gpu {
         body: &str,
         rows: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
-        let definitions = [("SLOPED_SHADOWS", None)];
-        let module = wgsl::module_alone(&entry_point::<N>(imports, body), &definitions);
-        let module = module.unwrap_or_else(|error| panic!("{error}"));
-        let entries = [
-            wgpu::BindGroupEntry {
-                binding: 2,
-                resource: wgpu::BindingResource::TextureView(&shadows.maps),
-            },
-            wgpu::BindGroupEntry {
-                binding: 3,
-                resource: wgpu::BindingResource::Sampler(&shadows.sampler),
-            },
+        let resources = [
+            wgpu::BindingResource::TextureView(&shadows.maps),
+            wgpu::BindingResource::Sampler(&shadows.sampler),
         ];
-        self.run(module, rows, &entries)
+        let entries = (2..).zip(resources);
+        let entries = entries.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
+        let entries: Vec<_> = entries.collect();
+        self.evaluate_bound(&[("SLOPED_SHADOWS", None)], &entries, imports, body, rows)
     }
 
     /// As [`evaluate`](Self::evaluate), for functions that read bindings: they are variables that

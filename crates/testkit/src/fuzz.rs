@@ -127,58 +127,17 @@ pub fn check_command_lines<T>(
     );
 }
 
-/// What text may contain that is wrong, or just right.
-const WORDS: [&str; 44] = [
-    "NaN",
-    "inf",
-    "-inf",
-    "1e999",
-    "-0.0",
-    "0",
-    "-1",
-    "4294967296",
-    "18446744073709551616",
-    "1e-45",
-    "3.4028236e38",
-    "true",
-    "None",
-    "Some(",
-    "()",
-    "(((((((((((((((((",
-    "))))",
-    "[[[[[[[[",
-    "]",
-    "{",
-    "}",
-    "\"",
-    "'",
-    "\\u{0}",
-    "\\",
-    "r#\"",
-    "\"#",
-    "/*",
-    "*/",
-    "//",
-    "\u{feff}",
-    "\u{1f600}",
-    "\u{202e}",
-    ":",
-    ",",
-    "#",
-    "#ffffffff",
-    "version: 2,",
-    "version: 3,",
-    "..",
-    "../",
-    "/etc/",
-    "file://",
-    "C:\\",
-];
+/// What text may contain that is wrong, or just right, between spaces.
+const WORDS: &str = "NaN inf -inf 1e999 -0.0 0 -1 4294967296 18446744073709551616 1e-45 \
+    3.4028236e38 true None Some( () ((((((((((((((((( )))) [[[[[[[[ ] { } \" ' \\u{0} \\ r#\" \"# /* \
+    */ // \u{feff} \u{1f600} \u{202e} : , # #ffffffff version:2, version:3, .. ../ /etc/ file:// \
+    C:\\";
 
 /// Texts that are made of right ones.
 pub struct Texts {
     random: Random,
     right: Vec<String>,
+    words: Vec<&'static str>,
 }
 
 /// A random number below `end`, which has at most 24 bits.
@@ -210,6 +169,7 @@ impl Texts {
         Self {
             random: Random::new(seed),
             right,
+            words: WORDS.split(' ').collect(),
         }
     }
 
@@ -231,7 +191,7 @@ impl Texts {
             }
             4 => {
                 let many = 1 << below(random, 12);
-                let word = WORDS[below(random, WORDS.len())];
+                let word = self.words[below(random, self.words.len())];
                 text.insert_str(at.start, &word.repeat(many));
             }
             5 => {
@@ -239,7 +199,7 @@ impl Texts {
                 text.insert(at.start, char::from_u32(code).unwrap_or('\u{fffd}'));
             }
             _ => {
-                let word = WORDS[below(random, WORDS.len())];
+                let word = self.words[below(random, self.words.len())];
                 text.replace_range(at, word);
             }
         }

@@ -68,11 +68,6 @@ impl Pool {
         headless
     }
 
-    /// Number of apps that no test uses at the moment.
-    pub fn idle_apps(&self) -> usize {
-        self.idle().len()
-    }
-
     fn idle(&self) -> MutexGuard<'_, Vec<Idle>> {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }

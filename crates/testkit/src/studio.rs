@@ -15,7 +15,6 @@ use bevy_comics::{
     },
     objects::{MeshSections, PatternAnchor},
     presets,
-    style::Preset,
 };
 
 use super::{
@@ -126,73 +125,34 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The presets with a golden picture in a scene: each in the scene that suits it best.
-fn golden_presets(scene: BuiltIn) -> &'static [Preset] {
+/// The names of the presets with a golden picture in a scene: each is in the scene that suits it best.
+fn golden_presets(scene: BuiltIn) -> &'static str {
     match scene {
-        BuiltIn::Mountains => &[
-            presets::TWILIGHT_TOON,
-            presets::CRIMSON_DUSK,
-            presets::EMERALD_INK,
-            presets::WATERCOLOR,
-        ],
-        BuiltIn::Teapot => &[
-            presets::MUSEUM_PRINT,
-            presets::SEPIA,
-            presets::FIGURE_7A,
-            presets::FIGURE_7B,
-            presets::FIGURE_8A,
-            presets::FIGURE_8B,
-            presets::FIGURE_8C,
-        ],
-        BuiltIn::Theatre => &[
-            presets::SILVER_AGE,
-            presets::PENCIL_SKETCH,
-            presets::CLEAR_BANDS,
-            presets::SILENT_FILM,
-            presets::MANGA_PAGE,
-            presets::POP_POSTER,
-            presets::PENCIL_STUDY,
-        ],
-        BuiltIn::Village => &[
-            presets::GRAPHIC_NOVEL,
-            presets::LIGNE_CLAIRE,
-            presets::NOIR,
-            presets::COBALT_NIGHT,
-            presets::MISTY_MORNING,
-            presets::GOLDEN_HOUR,
-            presets::BLUEPRINT,
-            presets::GOUACHE,
-            presets::NEWSPRINT,
-            presets::RISOGRAPH,
-            presets::STORYBOOK,
-            presets::COPPER_AND_TEAL,
-            presets::WOODCUT,
-            presets::CHARCOAL,
-        ],
-        BuiltIn::Figure => &[
-            presets::SATURDAY_MORNING,
-            presets::FIELD_GUIDE,
-            presets::STAINED_GLASS,
-            presets::RED_POSTER,
-            presets::BALLPOINT,
-            presets::RED_CHALK,
-            presets::SUMI_E,
-        ],
-        BuiltIn::Street => &[
-            presets::HARD_BOILED,
-            presets::NEON_NIGHT,
-            presets::UKIYO_E,
-            presets::SURVEY_MAP,
-            presets::OIL_SKETCH,
-        ],
-        BuiltIn::Hall => &[presets::ENGRAVING],
+        BuiltIn::Mountains => "twilight-toon crimson-dusk emerald-ink watercolor",
+        BuiltIn::Teapot => "museum-print sepia figure-7a figure-7b figure-8a figure-8b figure-8c",
+        BuiltIn::Theatre => {
+            "silver-age pencil-sketch clear-bands silent-film manga-page pop-poster \
+             pencil-study"
+        }
+        BuiltIn::Village => {
+            "graphic-novel ligne-claire noir cobalt-night misty-morning golden-hour \
+             blueprint gouache newsprint risograph storybook copper-and-teal woodcut \
+             charcoal"
+        }
+        BuiltIn::Figure => {
+            "saturday-morning field-guide stained-glass red-poster ballpoint red-chalk \
+             sumi-e"
+        }
+        BuiltIn::Street => "hard-boiled neon-night ukiyo-e survey-map oil-sketch",
+        BuiltIn::Hall => "engraving",
     }
 }
 
 /// The styles that have a golden picture in a scene, with their names: presets, and those of
 /// effects that no preset has.
 pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
-    let presets = golden_presets(scene).iter();
+    let names = golden_presets(scene).split(' ');
+    let presets = names.map(|name| presets::find(name).expect("a preset"));
     let presets = presets.map(|preset| (preset.name(), preset.style()));
     presets.chain(single_effects(scene)).collect()
 }

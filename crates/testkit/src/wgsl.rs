@@ -50,7 +50,9 @@ pub fn module_with(source: &str, definitions: &[Definition]) -> Result<wgpu::nag
     thread_local! {
         static COMPOSER: RefCell<Composer> = RefCell::default();
     }
-    COMPOSER.with_borrow_mut(|composer| compose(composer, modules(), &ENGINE, source, definitions))
+    let find = |name: &str| text_of(&ENGINE, name).or_else(|| modules().get(name).cloned());
+    let find = |name: &str| Some((find(name)?, HashMap::new()));
+    COMPOSER.with_borrow_mut(|composer| compose(composer, &find, source, definitions))
 }
 
 /// As [`module_with`], for functions that read bindings: uniforms, the view, the lights and the
@@ -59,21 +61,18 @@ pub fn module_alone(
     source: &str,
     definitions: &[Definition],
 ) -> Result<wgpu::naga::Module, String> {
-    static MODULES: OnceLock<Modules> = OnceLock::new();
-    let modules = MODULES.get_or_init(|| {
-        let modules = modules().iter();
-        modules
-            .map(|(name, (text, imports))| {
-                (name.clone(), (without_bindings(text), imports.clone()))
-            })
-            .collect()
-    });
     thread_local! {
         static COMPOSER: RefCell<Composer> = RefCell::default();
     }
-    COMPOSER.with_borrow_mut(|composer| {
-        compose(composer, modules, &engine::MODULES, source, definitions)
-    })
+    let own = |name: &str| modules().get(name).map(|text| without_bindings(text));
+    let find = |name: &str| text_of(&engine::MODULES, name).or_else(|| own(name));
+    let find = |name: &str| Some((find(name)?, HashMap::new()));
+    COMPOSER.with_borrow_mut(|composer| compose(composer, &find, source, definitions))
+}
+
+fn text_of(engine: &[(&str, &str)], name: &str) -> Option<String> {
+    let module = engine.iter().find(|(known, _)| *known == name);
+    module.map(|(_, text)| (*text).to_owned())
 }
 
 /// The text with uniforms as private variables.
@@ -98,32 +97,33 @@ pub fn without_stage(text: &str) -> String {
     })
 }
 
+/// The values of definitions by name.
+type Values = HashMap<String, ShaderDefValue>;
+
+/// The text of a module that can be imported, and what is defined in it.
+type Find<'a> = &'a dyn Fn(&str) -> Option<(String, Values)>;
+
 /// Composes a module, and keeps it for `tools/translate`.
 fn compose(
     composer: &mut Composer,
-    modules: &Modules,
-    engine: &[(&str, &str)],
+    find: Find,
     source: &str,
     definitions: &[Definition],
 ) -> Result<wgpu::naga::Module, String> {
-    let module = composed(composer, modules, engine, source, definitions)?;
+    let module = composed(composer, find, source, definitions)?;
     keep(&module, definitions);
     Ok(module)
 }
 
 fn composed(
     composer: &mut Composer,
-    modules: &Modules,
-    engine: &[(&str, &str)],
+    find: Find,
     source: &str,
     definitions: &[Definition],
 ) -> Result<wgpu::naga::Module, String> {
     composer.capabilities = wgpu::naga::valid::Capabilities::all();
-    let (_, wanted, _) = get_preprocessor_data(source);
-    for import in wanted {
-        add(composer, modules, engine, &import.import)?;
-    }
-    let mut shader_defs: HashMap<_, _> = definitions
+    add_imports(composer, find, source)?;
+    let mut shader_defs: Values = definitions
         .iter()
         .map(|(name, number)| {
             let value = number.map_or(ShaderDefValue::Bool(true), ShaderDefValue::UInt);
@@ -188,10 +188,31 @@ fn keep(module: &wgpu::naga::Module, definitions: &[Definition]) {
     }
 }
 
+/// Adds the modules that a text imports, and those that these import.
+fn add_imports(composer: &mut Composer, find: Find, text: &str) -> Result<(), String> {
+    let (_, imports, _) = get_preprocessor_data(text);
+    for name in imports.into_iter().map(|import| import.import) {
+        if composer.contains_module(&name) {
+            continue;
+        }
+        let (text, shader_defs) = find(&name).ok_or_else(|| format!("no module {name:?}"))?;
+        add_imports(composer, find, &text)?;
+        let module = ComposableModuleDescriptor {
+            source: &text,
+            file_path: &name,
+            shader_defs,
+            ..Default::default()
+        };
+        let added = composer.add_composable_module(module).map(|_| ());
+        added.map_err(|error| error.emit_to_string(composer))?;
+    }
+    Ok(())
+}
+
 /// The crate's modules with the engine's own, for materials.
 pub struct Library {
     composer: Composer,
-    engine: HashMap<String, (String, HashMap<String, ShaderDefValue>)>,
+    engine: HashMap<String, (String, Values)>,
 }
 
 impl Library {
@@ -222,77 +243,38 @@ impl Library {
 
     /// Composes and validates an entry point.
     pub fn compose(&mut self, source: &str, definitions: &[Definition]) -> Result<(), String> {
-        self.composer.capabilities = wgpu::naga::valid::Capabilities::all();
-        self.add_imports(source)?;
-        compose(&mut self.composer, modules(), &[], source, definitions).map(|_| ())
+        let module = self.module(source, definitions)?;
+        keep(&module, definitions);
+        Ok(())
     }
 
     /// The same of an entry point that only some native devices can have: it is not translated.
     pub fn check(&mut self, source: &str, definitions: &[Definition]) -> Result<(), String> {
-        self.composer.capabilities = wgpu::naga::valid::Capabilities::all();
-        self.add_imports(source)?;
-        composed(&mut self.composer, modules(), &[], source, definitions).map(|_| ())
+        self.module(source, definitions).map(|_| ())
     }
 
-    fn add_imports(&mut self, text: &str) -> Result<(), String> {
-        let (_, imports, _) = get_preprocessor_data(text);
-        for name in imports.into_iter().map(|import| import.import) {
-            if self.composer.contains_module(&name) {
-                continue;
-            }
-            let none = HashMap::new();
-            let own = modules().get(&name).map(|(text, _)| (text.clone(), none));
-            let (text, definitions) = own
-                .or_else(|| self.engine.get(&name).cloned())
-                .ok_or_else(|| format!("no module {name:?}"))?;
-            self.add_imports(&text)?;
-            add_module(&mut self.composer, &name, &text, &definitions)?;
-        }
-        Ok(())
+    fn module(
+        &mut self,
+        source: &str,
+        definitions: &[Definition],
+    ) -> Result<wgpu::naga::Module, String> {
+        let Self { composer, engine } = self;
+        let own = |name: &str| Some((modules().get(name)?.clone(), HashMap::new()));
+        let find = |name: &str| own(name).or_else(|| engine.get(name).cloned());
+        composed(composer, &find, source, definitions)
     }
 }
 
-type Modules = HashMap<String, (String, Vec<naga_oil::compose::ImportDefinition>)>;
-
-/// What can be imported: text and imports by name.
-fn modules() -> &'static Modules {
-    static MODULES: OnceLock<Modules> = OnceLock::new();
+/// The text of each module of the crate that can be imported, by name.
+fn modules() -> &'static HashMap<String, String> {
+    static MODULES: OnceLock<HashMap<String, String>> = OnceLock::new();
     MODULES.get_or_init(|| {
-        let mut modules = HashMap::new();
-        for path in files() {
-            let text = fs::read_to_string(&path).expect("a WGSL file");
-            let (name, imports, _) = get_preprocessor_data(&text);
-            if let Some(name) = name {
-                modules.insert(name, (text, imports));
-            }
-        }
-        modules
+        let texts = files()
+            .into_iter()
+            .map(|path| fs::read_to_string(path).expect("a WGSL file"));
+        let named = texts.filter_map(|text| Some((get_preprocessor_data(&text).0?, text)));
+        named.collect()
     })
-}
-
-fn add(
-    composer: &mut Composer,
-    modules: &Modules,
-    engine: &[(&str, &str)],
-    name: &str,
-) -> Result<(), String> {
-    if composer.contains_module(name) {
-        return Ok(());
-    }
-    if let Some((_, text)) = engine.iter().find(|(engine, _)| *engine == name) {
-        let (_, imports, _) = get_preprocessor_data(text);
-        for import in imports {
-            add(composer, modules, engine, &import.import)?;
-        }
-        return add_module(composer, name, text, &HashMap::new());
-    }
-    let (text, imports) = modules
-        .get(name)
-        .ok_or_else(|| format!("no module {name:?} in the crate"))?;
-    for import in imports {
-        add(composer, modules, engine, &import.import)?;
-    }
-    add_module(composer, name, text, &HashMap::new())
 }
 
 /// What the crate imports of the engine, as far as it uses it.
@@ -314,20 +296,3 @@ const ENGINE: [(&str, &str); 2] = [
          @group(0) @binding(0) var<uniform> view: View;",
     ),
 ];
-
-fn add_module(
-    composer: &mut Composer,
-    name: &str,
-    text: &str,
-    shader_defs: &HashMap<String, ShaderDefValue>,
-) -> Result<(), String> {
-    composer
-        .add_composable_module(ComposableModuleDescriptor {
-            source: text,
-            file_path: name,
-            shader_defs: shader_defs.clone(),
-            ..Default::default()
-        })
-        .map(|_| ())
-        .map_err(|error| error.emit_to_string(composer))
-}

@@ -52,7 +52,6 @@ use bevy_comics_testkit::{
     reference::{
         Rgb, color,
         map::{Frame, Projection},
-        window,
     },
 };
 use proptest::{

@@ -79,34 +79,50 @@ impl Gltf {
         self.push("bufferViews", view)
     }
 
+    pub fn accessor(&mut self, bytes: &[u8], description: Value) -> usize {
+        let mut accessor = description;
+        accessor["bufferView"] = json!(self.view(bytes));
+        self.push("accessors", accessor)
+    }
+
+    pub fn floats(&mut self, values: &[f32], kind: &str, count: usize) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let mut floats = json!({"componentType": 5126, "count": count, "type": kind});
+        if kind == "VEC3" {
+            floats["min"] = json!([-1, -1, -1]);
+            floats["max"] = json!([1, 1, 1]);
+        }
+        self.accessor(&bytes, floats)
+    }
+
     fn add(&mut self, part: &Part) {
-        let (positions, normals, indices) = match part.shape {
-            Shape::Ball => ball(),
-            Shape::Box => cube(),
+        let mesh = match part.shape {
+            Shape::Ball => Sphere::new(1.0).mesh().uv(64, 32),
+            Shape::Box => Cuboid::from_length(2.0).into(),
         };
-        // Every face of a texture coordinate set shows the whole texture's middle.
-        let uvs = vec![[0.5f32, 0.5]; positions.len()];
-        let count = positions.len();
-        let mut accessor = |bytes: Vec<u8>, kind: &str, component: u32, count: usize| {
-            let view = self.view(&bytes);
-            let value = json!({"bufferView": view, "componentType": component, "count": count,
-                "type": kind, "min": [-1, -1, -1], "max": [1, 1, 1]});
-            let value = if kind == "VEC3" {
-                value
-            } else {
-                json!({"bufferView": view, "componentType": component, "count": count, "type": kind})
-            };
-            self.push("accessors", value)
+        let points = |attribute| {
+            let values = mesh
+                .attribute(attribute)
+                .and_then(VertexAttributeValues::as_float3);
+            values.expect("three numbers a vertex").as_flattened()
         };
-        let position = accessor(bytes(positions.as_flattened()), "VEC3", 5126, count);
-        let normal = accessor(bytes(normals.as_flattened()), "VEC3", 5126, count);
-        let uv = accessor(bytes(uvs.as_flattened()), "VEC2", 5126, count);
-        let index_bytes = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
-        let index = accessor(index_bytes, "SCALAR", 5123, indices.len());
-        let [r, g, b] = part.color.map(linear);
+        let count = mesh.count_vertices();
+        let position = self.floats(points(Mesh::ATTRIBUTE_POSITION), "VEC3", count);
+        let normal = self.floats(points(Mesh::ATTRIBUTE_NORMAL), "VEC3", count);
+        // Every face shows the texture's middle.
+        let uv = self.floats(&vec![0.5; 2 * count], "VEC2", count);
+        let indices: Vec<usize> = mesh.indices().expect("indices").iter().collect();
+        let bytes: Vec<u8> = (indices.iter())
+            .flat_map(|i| (*i as u16).to_le_bytes())
+            .collect();
+        let index = json!({"componentType": 5123, "count": indices.len(), "type": "SCALAR"});
+        let index = self.accessor(&bytes, index);
+        let color = Color::srgb_from_array(part.color)
+            .to_linear()
+            .to_f32_array();
         let material = self.push(
             "materials",
-            json!({"pbrMetallicRoughness": {"baseColorFactor": [r, g, b, 1.0],
+            json!({"pbrMetallicRoughness": {"baseColorFactor": color,
                 "metallicFactor": part.metallic, "roughnessFactor": part.roughness}}),
         );
         let mesh = self.push(
@@ -123,9 +139,8 @@ impl Gltf {
     /// Gives the first material this image as its base colour.
     pub fn texture(&mut self, image: Value, texture: Value) {
         self.push("images", image);
-        let index = self.push("textures", texture);
-        self.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
-            json!({"index": index});
+        let texture = json!({"index": self.push("textures", texture)});
+        self.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = texture;
     }
 
     pub fn write_glb(mut self, path: &Path) {
@@ -153,59 +168,4 @@ impl Gltf {
         fs::write(path.with_file_name(buffer), self.binary).expect("written");
         fs::write(path, self.json.to_string()).expect("written");
     }
-}
-
-fn bytes(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|x| x.to_le_bytes()).collect()
-}
-
-pub fn linear(srgb: f32) -> f32 {
-    if srgb <= 0.04045 {
-        srgb / 12.92
-    } else {
-        ((srgb + 0.055) / 1.055).powf(2.4)
-    }
-}
-
-type Geometry = (Vec<[f32; 3]>, Vec<[f32; 3]>, Vec<u16>);
-
-/// The unit sphere.
-fn ball() -> Geometry {
-    const RINGS: u16 = 32;
-    let across = 2 * RINGS + 1;
-    let points: Vec<[f32; 3]> = (0..=RINGS)
-        .flat_map(|ring| (0..across).map(move |step| (ring, step)))
-        .map(|(ring, step)| {
-            let polar = std::f32::consts::PI * f32::from(ring) / f32::from(RINGS);
-            let turn = std::f32::consts::PI * f32::from(step) / f32::from(RINGS);
-            let (sin, cos) = polar.sin_cos();
-            [sin * turn.cos(), cos, -sin * turn.sin()]
-        })
-        .collect();
-    let indices = (0..RINGS)
-        .flat_map(|ring| (0..2 * RINGS).map(move |step| ring * across + step))
-        .flat_map(|k| [k, k + across, k + across + 1, k, k + across + 1, k + 1])
-        .collect();
-    (points.clone(), points, indices)
-}
-
-/// The cube from -1 to 1.
-fn cube() -> Geometry {
-    let (mut positions, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-    for axis in 0..3 {
-        for side in [1.0f32, -1.0] {
-            let first = positions.len() as u16;
-            for (a, b) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-                let (mut position, mut normal) = ([0.0; 3], [0.0; 3]);
-                position[axis] = side;
-                position[(axis + 1) % 3] = a * side;
-                position[(axis + 2) % 3] = b;
-                normal[axis] = side;
-                positions.push(position);
-                normals.push(normal);
-            }
-            indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
-        }
-    }
-    (positions, normals, indices)
 }

@@ -12,7 +12,7 @@ use image::RgbImage;
 use serde_json::json;
 
 use crate::{
-    command_line::{folder, run},
+    command_line::{dumped, folder, frame, render},
     prelude::*,
 };
 
@@ -60,15 +60,6 @@ fn lamp() -> Vec<Part> {
     ]
 }
 
-/// Runs the example and gives what it wrote to stderr.
-fn render(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    assert!(!errors.contains("panicked"), "{arguments:?}: {errors}");
-    errors
-}
-
 /// A picture, which of its pixels show the model, namely those with depth, and what was written to
 /// stderr.
 struct Shot {
@@ -78,34 +69,26 @@ struct Shot {
 }
 
 impl Shot {
-    fn take(folder: &Path, model: &str, size: (u32, u32), more: &[&str]) -> Self {
-        let size = format!("{}x{}", size.0, size.1);
-        let mut arguments = vec![model, "--size", &size, "--msaa", "1", "--frames", "4"];
-        arguments.extend(["--out", "p.png", "--dump", "d"]);
-        arguments.extend(more);
-        let errors = render(folder, &arguments);
-        let picture = image::open(folder.join("p.png"))
-            .expect("a picture")
-            .to_rgb8();
-        let depth = exr::prelude::read_first_flat_layer_from_file(folder.join("d/depth.exr"))
-            .expect("depth.exr");
-        let values = depth.layer_data.channel_data.list[0]
-            .sample_data
-            .values_as_f32();
+    fn take(folder: &Path, model: &str, size: (u32, u32), more: &str) -> Self {
+        let size = format!("--size {}x{} --msaa 1 --frames 4", size.0, size.1);
+        let errors = render(
+            folder,
+            &format!("{model} {size} --out p.png --dump d {more}"),
+        );
+        let picture = image::open(folder.join("p.png"));
+        let (_, depth) = dumped(folder, "depth.exr");
         Self {
-            picture,
+            picture: picture.expect("a picture").to_rgb8(),
             // Depth is reversed: zero is infinitely far away.
-            mask: values.map(|depth| depth > 0.0).collect(),
+            mask: depth.values_as_f32().map(|depth| depth > 0.0).collect(),
             errors,
         }
     }
 
     fn pixels(&self) -> Vec<[u8; 3]> {
         let pixels = self.picture.pixels().zip(&self.mask);
-        let pixels: Vec<_> = pixels
-            .filter(|(_, shown)| **shown)
-            .map(|(p, _)| p.0)
-            .collect();
+        let shown = pixels.filter(|(_, shown)| **shown);
+        let pixels: Vec<_> = shown.map(|(pixel, _)| pixel.0).collect();
         assert!(pixels.len() > 50, "{} pixels show the model", pixels.len());
         pixels
     }
@@ -113,11 +96,8 @@ impl Shot {
     /// Fraction of the model's pixels with a channel at the end of its range.
     fn clipped(&self) -> f64 {
         let pixels = self.pixels();
-        let clipped = pixels
-            .iter()
-            .filter(|p| p.iter().any(|c| *c >= 254))
-            .count();
-        clipped as f64 / pixels.len() as f64
+        let clipped = pixels.iter().filter(|p| p.iter().any(|c| *c >= 254));
+        clipped.count() as f64 / pixels.len() as f64
     }
 
     /// Mean colour of the brighter half of the model's pixels, 0 to 1, sRGB.
@@ -137,21 +117,17 @@ fn bounds(mask: &[bool], width: u32) -> [u32; 4] {
     let mut bounds = [u32::MAX, 0, u32::MAX, 0];
     for (index, _) in mask.iter().enumerate().filter(|(_, set)| **set) {
         let (x, y) = (index as u32 % width, index as u32 / width);
-        bounds = [
-            bounds[0].min(x),
-            bounds[1].max(x),
-            bounds[2].min(y),
-            bounds[3].max(y),
-        ];
+        let [left, right, top, bottom] = bounds;
+        bounds = [left.min(x), right.max(x), top.min(y), bottom.max(y)];
     }
     bounds
 }
 
 /// The model spans 85 % of the side that it meets first, and is in the middle.
-fn assert_framed(folder: &Path, model: &str, size: (u32, u32), more: &[&str]) {
+fn assert_framed(folder: &Path, model: &str, size: (u32, u32), more: &str) {
     let shot = Shot::take(folder, model, size, more);
     let [left, right, top, bottom] = bounds(&shot.mask, size.0);
-    let what = format!("{model} {size:?} {more:?}: x {left}..={right}, y {top}..={bottom}");
+    let what = format!("{model} {size:?} {more}: x {left}..={right}, y {top}..={bottom}");
     assert!(left <= right, "{what}: nothing is seen");
     let spans = [
         f64::from(right + 1 - left) / f64::from(size.0),
@@ -177,9 +153,8 @@ fn a_model_fills_the_frame() {
     let far_off = [1200.0, -300.0, 4000.0];
     Gltf::new(&lamp(), 1.0, far_off).write_glb(&folder.join("off-centre.glb"));
     let model = "off-centre.glb";
-    assert_framed(&folder, model, (200, 120), &["--style", "none"]);
-    let upright = ["--style", "none", "--ortho", "fit"];
-    assert_framed(&folder, model, (120, 200), &upright);
+    assert_framed(&folder, model, (200, 120), "--style none");
+    assert_framed(&folder, model, (120, 200), "--style none --ortho fit");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
@@ -199,11 +174,11 @@ fn models_fill_the_frame_whatever_their_size_place_and_shape() {
     for (name, parts, scale) in cases {
         let file = format!("{name}.glb");
         Gltf::new(parts, scale, [0.0; 3]).write_glb(&folder.join(&file));
-        assert_framed(&folder, &file, (200, 120), &["--style", "none"]);
+        assert_framed(&folder, &file, (200, 120), "--style none");
     }
-    assert_framed(&folder, "slab.glb", (120, 200), &["--style", "none"]);
-    assert_framed(&folder, "figure.glb", (120, 200), &["--ortho", "fit"]);
-    assert_framed(&folder, "slab.glb", (200, 120), &["--ortho", "fit"]);
+    assert_framed(&folder, "slab.glb", (120, 200), "--style none");
+    assert_framed(&folder, "figure.glb", (120, 200), "--ortho fit");
+    assert_framed(&folder, "slab.glb", (200, 120), "--ortho fit");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
@@ -214,15 +189,10 @@ fn a_skinned_model_is_framed_in_its_pose() {
     let mut gltf = Gltf::new(&[bar], 1.0, [0.0; 3]);
     // All vertices follow one joint, which lies down and is five times as large.
     let vertices = 24;
-    let joints = gltf.view(&vec![0u8; 4 * vertices]);
-    let weights: Vec<u8> = std::iter::repeat_n([1.0f32, 0.0, 0.0, 0.0], vertices)
-        .flatten()
-        .flat_map(f32::to_le_bytes)
-        .collect();
-    let weights = gltf.view(&weights);
-    let accessor = |view, component, kind: &str| json!({"bufferView": view, "componentType": component, "count": vertices, "type": kind});
-    let joints = gltf.push("accessors", accessor(joints, 5121, "VEC4"));
-    let weights = gltf.push("accessors", accessor(weights, 5126, "VEC4"));
+    let joints = json!({"componentType": 5121, "count": vertices, "type": "VEC4"});
+    let joints = gltf.accessor(&vec![0; 4 * vertices], joints);
+    let weights = [1.0, 0.0, 0.0, 0.0].repeat(vertices);
+    let weights = gltf.floats(&weights, "VEC4", vertices);
     let attributes = &mut gltf.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = json!(joints);
     attributes["WEIGHTS_0"] = json!(weights);
@@ -233,16 +203,14 @@ fn a_skinned_model_is_framed_in_its_pose() {
     gltf.json["nodes"][1]["skin"] = json!(0);
     gltf.json["scenes"][0]["nodes"] = json!([0, joint]);
     gltf.write_glb(&folder.join("skinned.glb"));
-    assert_framed(&folder, "skinned.glb", (160, 120), &["--style", "none"]);
+    assert_framed(&folder, "skinned.glb", (160, 120), "--style none");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
 /// A picture of a model without a style.
-fn plain(folder: &Path, name: &str, gltf: Gltf, more: &[&str]) -> Shot {
+fn plain(folder: &Path, name: &str, gltf: Gltf, more: &str) -> Shot {
     gltf.write_glb(&folder.join(name));
-    let mut arguments = vec!["--style", "none"];
-    arguments.extend(more);
-    Shot::take(folder, name, (96, 96), &arguments)
+    Shot::take(folder, name, (96, 96), &format!("--style none {more}"))
 }
 
 fn assert_color_of_skin(shot: &Shot) {
@@ -262,9 +230,9 @@ fn assert_lit_without_clipping(name: &str, shot: &Shot) {
 #[test]
 fn skin_has_its_color_and_chrome_does_not_clip() {
     let folder = folder("light");
-    assert_color_of_skin(&plain(&folder, "skin.glb", ball(SKIN, 0.0, 0.8), &[]));
+    assert_color_of_skin(&plain(&folder, "skin.glb", ball(SKIN, 0.0, 0.8), ""));
     let chrome = ball([0.95; 3], 1.0, 0.05);
-    assert_lit_without_clipping("chrome", &plain(&folder, "chrome.glb", chrome, &[]));
+    assert_lit_without_clipping("chrome", &plain(&folder, "chrome.glb", chrome, ""));
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
@@ -272,7 +240,7 @@ fn skin_has_its_color_and_chrome_does_not_clip() {
 #[ignore = "long: starts the example for each of many materials"]
 fn lit_colors_are_those_of_the_material_and_nothing_clips() {
     let folder = folder("lighting");
-    for more in [&["--hdr"][..], &["--material", "toon"]] {
+    for more in ["--hdr", "--material toon"] {
         assert_color_of_skin(&plain(&folder, "skin.glb", ball(SKIN, 0.0, 0.8), more));
     }
     for (name, gltf) in [
@@ -280,7 +248,7 @@ fn lit_colors_are_those_of_the_material_and_nothing_clips() {
         ("lamp", Gltf::new(&lamp(), 1.0, [0.0; 3])),
         ("rough", ball([0.95; 3], 1.0, 0.3)),
     ] {
-        let shot = plain(&folder, &format!("{name}.glb"), gltf, &[]);
+        let shot = plain(&folder, &format!("{name}.glb"), gltf, "");
         assert_lit_without_clipping(name, &shot);
     }
     fs::remove_dir_all(folder).expect("the folder goes");
@@ -297,30 +265,22 @@ fn assert_own_light_suits(name: &str, intensity: f32, distance: f32) {
         "translation": [0.0, distance * 0.5, distance]});
     let node = gltf.push("nodes", lamp);
     gltf.json["scenes"][0]["nodes"] = json!([0, node]);
-    let shot = plain(&folder, "lamp.glb", gltf, &[]);
+    let shot = plain(&folder, "lamp.glb", gltf, "");
     assert!(shot.clipped() < 0.01, "{name}: {} clipped", shot.clipped());
     let lit = shot.lit_color();
     assert!((0.5..0.9).contains(&lit[0]), "{name}: {lit:?}");
-    let frame = fs::read(folder.join("d/frame.json")).expect("frame.json");
-    let frame: serde_json::Value = serde_json::from_slice(&frame).expect("JSON");
-    assert_eq!(
-        frame["lights"],
-        json!({"directional": 0, "point": 1, "spot": 0})
-    );
+    let lights = json!({"directional": 0, "point": 1, "spot": 0});
+    assert_eq!(frame(&folder)["lights"], lights);
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
 #[test]
-fn a_bright_light_of_the_model_is_kept_at_a_level_that_suits() {
+fn lights_of_the_model_are_kept_at_a_level_that_suits() {
     assert_own_light_suits("bright", 1e7, 3.0);
-}
-
-#[test]
-fn a_dim_light_of_the_model_is_kept_at_a_level_that_suits() {
     assert_own_light_suits("dim", 1e-3, 500.0);
 }
 
-/// The folder's files of this extension, by name.
+/// The folder's files, by name.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("the folder");
     let mut files: Vec<_> = entries.map(|entry| entry.expect("entry").path()).collect();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{Gltf, SKIN, Shot, assert_color_of_skin, ball};
 use crate::{
-    command_line::{folder, run},
+    command_line::{folder, render, run},
     prelude::*,
 };
 
@@ -38,43 +38,29 @@ fn embedded(image: &[u8], mime: &str, texture: Value) -> Gltf {
 }
 
 /// What the example warns of.
-fn ours(errors: &str) -> Vec<String> {
-    let ours = errors
-        .lines()
-        .filter(|line| line.starts_with("render: warning"));
-    ours.map(str::to_owned).collect()
+fn warnings(errors: &str) -> Vec<&str> {
+    let lines = errors.lines();
+    lines
+        .filter(|line| line.starts_with("render: warning"))
+        .collect()
 }
 
-/// The same of a run; it must end well and write a picture.
-fn warnings(folder: &Path, model: &str) -> Vec<String> {
-    let arguments = [
-        model, "--size", "64x64", "--msaa", "1", "--frames", "2", "--style", "none", "--out",
-        "w.png",
-    ];
-    let output = run(folder, &arguments);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{model}: {errors}");
-    assert!(!errors.contains("panicked"), "{model}: {errors}");
+/// The example ends well, writes a picture of the model, and says of each texture what these parts are
+/// found in.
+fn assert_named(folder: &Path, model: &str, says: &[&[&str]]) {
+    let arguments = "--size 64x64 --msaa 1 --frames 2 --style none --out w.png";
+    let errors = render(folder, &format!("{model} {arguments}"));
     let picture = image::open(folder.join("w.png"))
         .expect("a picture")
         .to_rgb8();
     fs::remove_file(folder.join("w.png")).expect("it goes");
     let [first, middle] = [(0, 0), (32, 32)].map(|(x, y)| picture.get_pixel(x, y).0);
     assert_ne!(first, middle, "{model}: no model is in the middle");
-    ours(&errors)
-}
-
-/// The example says of each texture what these parts are found in.
-fn assert_named(folder: &Path, model: &str, says: &[&[&str]]) {
-    let warnings = warnings(folder, model);
+    let warnings = warnings(&errors);
     assert_eq!(warnings.len(), says.len(), "{model}: {warnings:?}");
     for (warning, parts) in warnings.iter().zip(says) {
-        for part in *parts {
-            assert!(
-                warning.contains(part),
-                "{model}: {part} is not in {warning}"
-            );
-        }
+        let is_named = parts.iter().all(|part| warning.contains(part));
+        assert!(is_named, "{model}: {parts:?} are not in {warning}");
     }
 }
 
@@ -123,32 +109,26 @@ fn paint() -> Vec<u8> {
 
 /// The ball has the colour of its texture, and nothing is said.
 fn assert_seen(folder: &Path, model: &str) {
-    let shot = Shot::take(folder, model, (64, 64), &["--style", "none"]);
-    assert_eq!(ours(&shot.errors), Vec::<String>::new(), "{model}");
+    let shot = Shot::take(folder, model, (64, 64), "--style none");
+    assert_eq!(warnings(&shot.errors), Vec::<&str>::new(), "{model}");
     assert_color_of_skin(&shot);
 }
 
 #[test]
-fn textures_in_the_model_are_seen_and_nothing_is_said() {
+fn textures_in_and_beside_the_model_are_seen_and_nothing_is_said() {
     let folder = folder("good-textures");
     let good = embedded(&paint(), "image/png", json!({"source": 0}));
     good.write_glb(&folder.join("good.glb"));
     // An image that only an extension names is shown if the build reads its format.
     let by_extension = json!({"extensions": {"EXT_texture_webp": {"source": 0}}});
     embedded(&paint(), "image/png", by_extension).write_glb(&folder.join("extension.glb"));
-    assert_seen(&folder, "good.glb");
-    assert_seen(&folder, "extension.glb");
-    fs::remove_dir_all(folder).expect("the folder goes");
-}
-
-#[test]
-fn textures_beside_the_model_are_seen_and_nothing_is_said() {
-    let folder = folder("textures-beside");
     let mut beside = ball([1.0; 3], 0.0, 0.8);
     beside.texture(json!({"uri": "my%20skin.png"}), json!({"source": 0}));
     beside.write_gltf(&folder.join("beside.gltf"), "a buffer.bin");
     fs::write(folder.join("my skin.png"), paint()).expect("written");
-    assert_seen(&folder, "beside.gltf");
+    for model in ["good.glb", "extension.glb", "beside.gltf"] {
+        assert_seen(&folder, model);
+    }
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
@@ -158,7 +138,7 @@ fn a_compressed_mesh_is_refused_with_the_remedy() {
     let mut gltf = ball(SKIN, 0.0, 0.8);
     gltf.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     gltf.write_glb(&folder.join("draco.glb"));
-    let output = run(&folder, &["draco.glb"]);
+    let output = run(&folder, "draco.glb");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{errors}");
     assert!(

@@ -1,13 +1,13 @@
 //! Rows of choices that together have every pair of choices that can be.
 
-use super::Definitions;
+use super::{Definitions, Variant};
 use crate::prelude::*;
 
 /// One way of something, with its definitions. One that ends in `=` and a number has that value.
 pub type Choice = &'static [&'static str];
 
-/// Two lists, each followed by the number of a choice.
-type Pair = (usize, usize, usize, usize);
+/// Two factors with a level each.
+pub type Pair = [(usize, usize); 2];
 
 /// The definitions of rows, and the pairs that no row has.
 pub struct Covering {
@@ -24,6 +24,44 @@ pub fn definition(text: &'static str) -> Definition<'static> {
 
 pub fn definitions(texts: &[&'static str]) -> Definitions {
     texts.iter().copied().map(definition).collect()
+}
+
+/// A list of choices from a line, in which `|` divides choices of several words or none.
+fn list(line: &'static str) -> &'static [Choice] {
+    let words =
+        |choice: &'static str| -> Choice { choice.split_whitespace().collect::<Vec<_>>().leak() };
+    line.split('|').map(words).collect::<Vec<_>>().leak()
+}
+
+/// The rows of lists, each written as [`list`] reads it, that have every pair.
+pub fn rows(
+    lists: &[&'static str],
+    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
+) -> Vec<Definitions> {
+    let lists: Vec<&[Choice]> = lists.iter().map(|line| list(line)).collect();
+    let found = covering(&lists, resolved).rows;
+    found.iter().map(|row| definitions(row)).collect()
+}
+
+/// A file with each of these texts as its definitions.
+pub fn each(file: &'static str, texts: &[&'static str]) -> Vec<Variant> {
+    let words = |text: &&'static str| text.split_whitespace().collect::<Vec<_>>();
+    texts
+        .iter()
+        .map(|text| (file, definitions(&words(text))))
+        .collect()
+}
+
+/// Rows with every pair, for one file.
+pub fn pairs(
+    file: &'static str,
+    lists: &[&'static str],
+    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
+) -> Vec<Variant> {
+    rows(lists, resolved)
+        .into_iter()
+        .map(|row| (file, row))
+        .collect()
 }
 
 /// Whether one of these texts is `name`.
@@ -48,75 +86,80 @@ pub fn fewest<V: AsRef<[Definition<'static>]>>(variants: Vec<V>) -> Vec<V> {
     kept
 }
 
-fn all_pairs(lists: &[&[Choice]]) -> BTreeSet<Pair> {
+/// Every pair of levels of two factors.
+pub fn all_pairs(sizes: &[usize]) -> BTreeSet<Pair> {
     let mut all = BTreeSet::new();
-    for (i, first) in lists.iter().enumerate() {
-        for (j, second) in lists.iter().enumerate().skip(i + 1) {
-            for a in 0..first.len() {
-                all.extend((0..second.len()).map(|b| (i, a, j, b)));
+    for (j, second) in sizes.iter().enumerate() {
+        for (i, first) in sizes[..j].iter().enumerate() {
+            for a in 0..*first {
+                all.extend((0..*second).map(|b| [(i, a), (j, b)]));
             }
         }
     }
     all
 }
 
-/// The pairs of choices that a row has and that are compiled.
-fn pairs(lists: &[&[Choice]], row: &[usize], names: &[&'static str]) -> Vec<Pair> {
-    let is_compiled =
-        |(i, a): &(usize, usize)| lists[*i][*a].iter().all(|name| names.contains(name));
-    let kept: Vec<(usize, usize)> = row
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(is_compiled)
-        .collect();
-    let mut found = Vec::new();
-    for (k, (i, a)) in kept.iter().enumerate() {
-        found.extend(kept[k + 1..].iter().map(|(j, b)| (*i, *a, *j, *b)));
+/// Rows of a level of every factor that together have every pair of levels that can be, and the pairs that
+/// cannot. Each row is the best of several random ones. `counts`: which factors of a row have their level.
+pub fn cover(
+    sizes: &[usize],
+    counts: impl Fn(&[usize]) -> Vec<bool>,
+) -> (Vec<Vec<usize>>, Vec<Pair>) {
+    assert!(sizes.len() > 1, "one factor has no pairs");
+    let mut missing = all_pairs(sizes);
+    let mut random = Random::new(1);
+    let (mut rows, mut never) = (Vec::new(), Vec::new());
+    while let Some(wanted) = missing.first().copied() {
+        // A pair may need a third level: one of many random rows has it.
+        let candidates = (0..120).map(|_| {
+            let level = |size: &usize| (random.unit() * *size as f32) as usize;
+            let mut row: Vec<usize> = sizes.iter().map(level).collect();
+            for (factor, level) in wanted {
+                row[factor] = level;
+            }
+            let counts = counts(&row);
+            let has = |(factor, level): (usize, usize)| counts[factor] && row[factor] == level;
+            let new = |pair: &&Pair| pair.iter().all(|one| has(*one));
+            let new: Vec<Pair> = missing.iter().filter(new).copied().collect();
+            (row, new)
+        });
+        let candidates = candidates.filter(|(_, new)| new.contains(&wanted));
+        let Some((row, new)) = candidates.max_by_key(|(_, new)| new.len()) else {
+            missing.remove(&wanted);
+            never.push(wanted);
+            continue;
+        };
+        for pair in new {
+            missing.remove(&pair);
+        }
+        rows.push(row);
     }
-    found
+    (rows, never)
 }
 
-/// Rows of one choice of every list that together have every pair of choices that can be. Each row is the
-/// best of several random ones. `resolved`: the definitions of a row without those that need others it
+/// The same of lists of choices. `resolved`: the definitions of a row without those that need others it
 /// lacks, and with what follows from them.
 pub fn covering(
     lists: &[&[Choice]],
     resolved: impl Fn(Vec<&'static str>) -> Vec<&'static str>,
 ) -> Covering {
-    let mut missing = all_pairs(lists);
-    let mut state = 1u64;
-    let mut random = move |below: usize| {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
+    let sizes: Vec<usize> = lists.iter().map(|list| list.len()).collect();
+    let names = |row: &[usize]| {
+        let chosen = lists.iter().zip(row).flat_map(|(list, k)| list[*k]);
+        resolved(chosen.copied().collect())
     };
-    let (mut rows, mut never) = (Vec::new(), Vec::new());
-    while let Some(wanted) = missing.first().copied() {
-        let (i, a, j, b) = wanted;
-        // A pair may need a third choice: one of many random rows has it.
-        let candidates = (0..120).map(|_| {
-            let mut row: Vec<usize> = lists.iter().map(|list| random(list.len())).collect();
-            (row[i], row[j]) = (a, b);
-            let chosen = lists.iter().zip(&row).flat_map(|(list, k)| list[*k]);
-            let names = resolved(chosen.copied().collect());
-            let pairs = pairs(lists, &row, &names);
-            (names, pairs)
-        });
-        let candidates = candidates.filter(|(_, pairs)| pairs.contains(&wanted));
-        let new = |(_, pairs): &(Vec<&'static str>, Vec<Pair>)| {
-            pairs.iter().filter(|pair| missing.contains(pair)).count()
-        };
-        let Some((names, pairs)) = candidates.max_by_key(new) else {
-            missing.remove(&wanted);
-            never.push([lists[i][a], lists[j][b]]);
-            continue;
-        };
-        for pair in &pairs {
-            missing.remove(pair);
-        }
-        rows.push(names);
+    let (rows, never) = cover(&sizes, |row| {
+        let names = names(row);
+        let chosen = lists.iter().zip(row).map(|(list, k)| list[*k]);
+        chosen
+            .map(|choice| choice.iter().all(|name| names.contains(name)))
+            .collect()
+    });
+    Covering {
+        rows: rows.iter().map(|row| names(row)).collect(),
+        never: never
+            .iter()
+            .map(|pair| pair.map(|(i, k)| lists[i][k]))
+            .collect(),
     }
-    Covering { rows, never }
 }

@@ -5,24 +5,29 @@ use bevy_comics_testkit::wgsl::{check as check_text, module_with, written};
 use super::{
     Definitions,
     covering::fewest,
-    effects::{self, debug_views, line_effects, picture_effects},
-    flags, optional, parts, subsets,
+    effects::{self, Modes, flag},
+    flags, numbers, optional, parts, product,
 };
 use crate::prelude::*;
+
+/// How many combinations of effects are composed; a quick test composes every 20th.
+const COMBINATIONS: usize = 1000;
 
 /// The definitions that the plugin sets for a pass. Those about depth are left out where nothing
 /// reads it; one number is always set.
 pub fn of_pass(parts: &[&[Definition<'static>]]) -> Definitions {
     let mut all = parts.concat();
-    let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-    let depth = names.contains(&"DEPTH");
+    let has = |wanted: &[&str]| all.iter().any(|(name, _)| wanted.contains(name));
+    let (map, depth) = (has(&["MAP"]), has(&["DEPTH"]));
+    let samples = has(&["DEPTH", "NORMALS", "OBJECT_IDS"]);
+    let has_flags = has(&["MAP_FLAGS"]);
     all.retain(|(name, _)| match *name {
-        "VISIBLE_RANGE" => names.contains(&"MAP"),
+        "VISIBLE_RANGE" => map,
         "OBLIQUE" => depth,
-        "MULTISAMPLED" => depth || names.contains(&"NORMALS") || names.contains(&"OBJECT_IDS"),
+        "MULTISAMPLED" => samples,
         _ => true,
     });
-    if !names.contains(&"MAP_FLAGS") {
+    if !has_flags {
         all.push(("MAP_FLAGS", Some(0)));
     }
     all
@@ -44,161 +49,119 @@ pub fn variants() -> Vec<Definitions> {
         modes(),
         vec![read()],
         combinations(),
-        forms_of_views(),
-        views_of_effects(),
+        debug_views(),
         parts::variants(),
     ]
     .concat()
 }
 
-/// Storage of the picture and kind of projection, some of each.
+/// Every storage of the picture and every projection, sampling and range of depth.
 fn views() -> Vec<Definitions> {
-    let view = |names: &[&'static str], map_flags| {
-        [flags(names), vec![("MAP_FLAGS", Some(map_flags))]].concat()
-    };
-    vec![
-        view(&["SAME_SIZE"], 0),
-        view(&["SAME_SIZE", "VISIBLE_RANGE", "STORED_SRGB"], 2),
-        view(&["VISIBLE_RANGE", "MULTISAMPLED", "FINISH"], 0),
-        view(
-            &["SAME_SIZE", "OBLIQUE", "VISIBLE_RANGE", "STORED_OKLAB"],
-            2,
-        ),
-        view(&["SAME_SIZE", "MULTISAMPLED", "OBLIQUE", "STORED_SRGB"], 1),
-        view(&["VISIBLE_RANGE", "STORED_OKLAB", "FINISH"], 3),
-    ]
+    let stored = [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]].map(flags);
+    product(&[
+        optional(&[
+            "MULTISAMPLED",
+            "OBLIQUE",
+            "VISIBLE_RANGE",
+            "SAME_SIZE",
+            "FINISH",
+        ]),
+        stored.to_vec(),
+        numbers("MAP_FLAGS", 0..4),
+    ])
 }
 
-/// Every mode of every effect, in every view.
+/// Some of the views, which have every choice.
+fn some_views() -> Vec<Definitions> {
+    views().into_iter().step_by(65).collect()
+}
+
+/// Every mode of every effect, in some views.
 fn modes() -> Vec<Definitions> {
-    let views = views();
-    let mut all = vec![of_pass(&[])];
-    for (_, modes) in effects::all() {
-        for mode in &modes {
-            all.extend(views.iter().map(|view| of_pass(&[mode, view])));
-        }
-    }
-    all
+    let modes = effects::all().iter().flat_map(|effect| &effect.modes);
+    let modes: Vec<_> = modes.cloned().chain([Vec::new()]).collect();
+    let all = product(&[modes, some_views()]);
+    all.iter().map(|parts| of_pass(&[parts])).collect()
 }
 
-/// Effects without variants: their modes are read from the settings.
+/// All effects without their variants: what these would set is read from the settings.
 fn read() -> Definitions {
-    let modes = effects::all().into_iter();
-    let mut read: Definitions = modes.flat_map(|(_, modes)| modes[0].clone()).collect();
-    read.retain(|(name, number)| number.is_none() && !name.starts_with("SKETCH"));
-    read
+    let modes = effects::all()
+        .iter()
+        .flat_map(|effect| effect.modes[0].clone());
+    let is_kept = |(name, number): &Definition| number.is_none() && !name.starts_with("SKETCH");
+    of_pass(&[&modes.filter(is_kept).collect::<Definitions>()])
 }
 
-/// Combinations of effects, with another mode each time.
+/// Random modes of about half of the effects in a random view, and with what effects of a game
+/// may read in addition.
 fn combinations() -> Vec<Definitions> {
+    let mut random = Random::new(1);
     let views = views();
-    let pictures = picture_effects();
-    let lines = line_effects();
-    let mut all = Vec::new();
-    let mut turn = 0;
-    for chosen in subsets(&[0, 1, 2, 3, 4, 5, 6]) {
-        for line in [None, Some(&lines[0]), Some(&lines[1])] {
-            for view in &views {
-                turn += 1;
-                let more = [&[][..], &[7], &[8], &[9], &[7, 8, 9]][turn % 5];
-                let chosen = chosen.iter().chain(more);
-                let modes = chosen.map(|i| &pictures[*i]).chain(line);
-                let mut parts: Vec<&[Definition]> = modes
-                    .map(|(_, modes)| &modes[turn % modes.len()][..])
-                    .collect();
-                parts.push(view);
-                all.push(of_pass(&parts));
-            }
-        }
-    }
-    all
+    let more = optional(&["NORMALS", "OBJECT_IDS", "DEPTH"]);
+    let mut combination = |_| {
+        let all = effects::all().iter();
+        let chosen: Vec<&Modes> = all.filter(|_| random.unit() < 0.5).collect();
+        let is_replaced = |name| {
+            chosen
+                .iter()
+                .any(|other| other.effect.replaces.contains(&name))
+        };
+        let drawn = chosen
+            .iter()
+            .filter(|chosen| !is_replaced(chosen.effect.name));
+        let modes: Vec<Definitions> = drawn.map(|drawn| random.pick(&drawn.modes)).collect();
+        of_pass(&[&modes.concat(), &random.pick(&views), &random.pick(&more)])
+    };
+    (0..COMBINATIONS).map(&mut combination).collect()
 }
 
-fn forms_of_views() -> Vec<Definitions> {
-    let pictures = picture_effects();
-    let lines = line_effects();
-    let mut all = Vec::new();
-    let forms = [
-        "MULTISAMPLED",
-        "OBLIQUE",
-        "VISIBLE_RANGE",
-        "SAME_SIZE",
-        "FINISH",
-    ];
-    let mut turn = 0;
-    for form in optional(&forms) {
-        for stored in [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]] {
-            for line in &lines {
-                turn += 1;
-                let map = [("MAP_FLAGS", Some(turn as u32 % 4))];
-                let stored = flags(stored);
-                let modes = pictures.iter().chain([line]);
-                let mut parts: Vec<&[Definition]> = modes
-                    .map(|(_, modes)| &modes[turn % modes.len()][..])
-                    .collect();
-                parts.extend([&form[..], &stored, &map]);
-                all.push(of_pass(&parts));
-            }
-        }
-    }
-    // What effects of a game may read in addition.
-    for needs in optional(&[
-        "NORMALS",
-        "OBJECT_IDS",
-        "DEPTH",
-        "MULTISAMPLED",
-        "SAME_SIZE",
-    ]) {
-        all.push(of_pass(&[&needs]));
-    }
-    all
-}
-
-/// Every debug view: on a camera without effects, with outlines, and with a sketch.
-fn views_of_effects() -> Vec<Definitions> {
-    let pictures = picture_effects();
-    let lines = line_effects();
-    let everything: Vec<&[Definition]> = pictures.iter().map(|(_, modes)| &modes[0][..]).collect();
-    let mut all = Vec::new();
-    for view in debug_views() {
-        for form in optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
-            let view = [&view[..], &flags(&["DEBUG_VIEW"])].concat();
-            all.push(of_pass(&[&view, &form]));
-            for (_, modes) in &lines {
-                let mut parts = everything.clone();
-                parts.extend([&view[..], &form, &modes[modes.len() - 1]]);
-                all.push(of_pass(&parts));
-            }
-        }
-    }
-    all
-}
-
-#[test]
-fn every_effect_of_the_crate_is_composed() {
-    let all = effects::all();
-    let mut composed: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-    let types = EffectRegistry::built_in().types();
-    let mut known: Vec<&str> = types.iter().map(|effect| effect.name).collect();
-    composed.sort_unstable();
-    known.sort_unstable();
-    assert_eq!(composed, known);
-    let of_effects = types.iter().filter(|effect| effect.view.is_some()).count();
-    assert_eq!(debug_views().len(), DebugView::SHARED.len() + of_effects);
+/// Every debug view: on a camera without effects, and with all effects, among them outlines or a
+/// sketch.
+fn debug_views() -> Vec<Definitions> {
+    let shared = DebugView::SHARED.iter().map(|view| match view {
+        DebugView::DepthMap => flags(&["VIEW_DEPTH_MAP", "MAP", "DEPTH"]),
+        DebugView::RawRange => flags(&["VIEW_RAW_RANGE", "MAP", "DEPTH"]),
+        DebugView::Silhouettes => flags(&["VIEW_SILHOUETTES", "LINES"]),
+        DebugView::Creases => flags(&["VIEW_CREASES", "LINES"]),
+        DebugView::ObjectIds => flags(&["VIEW_OBJECT_IDS", "OBJECT_IDS"]),
+        DebugView::Saturation => flags(&["VIEW_SATURATION"]),
+        DebugView::Difference => flags(&["VIEW_DIFFERENCE"]),
+        _ => panic!("{view:?} has no definitions here"),
+    });
+    let of_effects = effects::all()
+        .iter()
+        .filter(|modes| modes.effect.view.is_some());
+    let of_effects = of_effects.map(|Modes { effect, modes }| {
+        let view = flag(format!("VIEW_{}", effect.name.to_uppercase()));
+        [&[("VIEW_EFFECT", None), view], &modes[0][..]].concat()
+    });
+    let views: Vec<Definitions> = shared.chain(of_effects).collect();
+    let without = |left_out: &str| -> Definitions {
+        let drawn = effects::all()
+            .iter()
+            .filter(|modes| modes.effect.name != left_out);
+        drawn.flat_map(|drawn| drawn.modes[0].clone()).collect()
+    };
+    let all = product(&[
+        views,
+        vec![Vec::new(), without("outlines"), without("sketch")],
+        optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]),
+    ]);
+    let of_view = |parts: &Definitions| of_pass(&[parts, &[("DEBUG_VIEW", None)]]);
+    all.iter().map(of_view).collect()
 }
 
 /// Each effect alone, with everything that its modes set, in some view; and all without variants at once.
 #[test]
 fn every_effect_composes_and_validates() {
-    let views = views();
-    let mut all = vec![of_pass(&[])];
-    for (_, modes) in effects::all() {
-        let chosen = fewest(modes);
-        let of = |(k, mode): (usize, &Definitions)| of_pass(&[mode, &views[k % views.len()]]);
-        all.extend(chosen.iter().enumerate().map(of));
+    let views = some_views();
+    let mut all = vec![of_pass(&[]), read()];
+    for effect in effects::all() {
+        let modes = fewest(effect.modes.clone()).into_iter().enumerate();
+        all.extend(modes.map(|(k, mode)| of_pass(&[&mode, &views[k % views.len()]])));
     }
     check(&all);
-    check(&[read()]);
 }
 
 #[test]
@@ -207,36 +170,34 @@ fn every_mode_of_every_effect_composes_and_validates() {
     check(&modes());
 }
 
-/// Of all combinations, some of few and some of many effects.
 #[test]
 fn effects_compose_and_validate_together() {
-    let all = combinations();
-    let some: Vec<Definitions> = all.iter().step_by(97).chain(all.last()).cloned().collect();
+    let some: Vec<Definitions> = combinations().into_iter().step_by(20).collect();
     check(&some);
 }
 
 #[test]
-#[ignore = "long: some thousand shaders"]
-fn every_combination_of_effects_composes_and_validates() {
+#[ignore = "long: a thousand shaders"]
+fn many_combinations_of_effects_compose_and_validate() {
     check(&combinations());
 }
 
 /// Browsers get shaders as text again, without attributes of structs: some modes of each effect.
 #[test]
 fn shaders_that_are_written_as_text_are_valid() {
-    let all = effects::all().into_iter();
-    check_written(all.flat_map(|(_, modes)| [modes[0].clone(), modes[modes.len() - 1].clone()]));
+    let all = effects::all().iter();
+    check_written(all.flat_map(|Modes { modes, .. }| [&modes[0], &modes[modes.len() - 1]]));
 }
 
 #[test]
 #[ignore = "long: every mode, written and read"]
 fn shaders_of_every_mode_are_valid_as_text() {
-    check_written(effects::all().into_iter().flat_map(|(_, modes)| modes));
+    check_written(effects::all().iter().flat_map(|effect| &effect.modes));
 }
 
-fn check_written(modes: impl Iterator<Item = Definitions>) {
+fn check_written<'a>(modes: impl Iterator<Item = &'a Definitions>) {
     let source = EffectRegistry::built_in().shader();
-    let modes: Vec<Definitions> = modes.collect();
+    let modes: Vec<Definitions> = modes.cloned().collect();
     // Each mode with the next: structs of all sizes follow one another.
     let mut pairs: Vec<Definitions> = modes.windows(2).map(<[_]>::concat).collect();
     pairs.extend(modes);
@@ -255,18 +216,6 @@ fn check_written(modes: impl Iterator<Item = Definitions>) {
     }
 }
 
-#[test]
-fn forms_of_views_compose_and_validate() {
-    let some: Vec<Definitions> = forms_of_views().into_iter().step_by(7).collect();
-    check(&some);
-}
-
-#[test]
-#[ignore = "long: every form, with all effects"]
-fn every_form_of_a_view_composes_and_validates() {
-    check(&forms_of_views());
-}
-
 /// Everything that passes and parts set.
 #[test]
 fn parts_and_passes_of_a_plan_compose_and_validate() {
@@ -281,5 +230,5 @@ fn every_part_and_pass_of_a_plan_composes_and_validates() {
 
 #[test]
 fn every_debug_view_composes_and_validates() {
-    check(&views_of_effects());
+    check(&debug_views());
 }

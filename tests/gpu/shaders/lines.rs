@@ -2,8 +2,7 @@
 
 use super::{
     Variant, check,
-    covering::{Choice, covering, definitions, has, has_any},
-    subsets,
+    covering::{each, has, has_any, pairs},
 };
 
 /// Everything that the tests of this file compose.
@@ -11,110 +10,34 @@ pub fn variants() -> Vec<Variant> {
     [finding(), walking(), completing(), settling(), drawing()].concat()
 }
 
-fn add(all: &mut Vec<Variant>, file: &'static str, names: &[&'static str]) {
-    all.push((file, definitions(names)));
-}
-
-/// Rows with every pair, for one file.
-fn pairs(
-    file: &'static str,
-    lists: &[&[Choice]],
-    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
-) -> Vec<Variant> {
-    let rows = covering(lists, resolved).rows;
-    rows.iter().map(|row| (file, definitions(row))).collect()
-}
-
 /// What lines are along: the kinds of a view, and last those of marked objects.
-const KINDS: &[Choice] = &[
-    &["SILHOUETTES"],
-    &["CREASES"],
-    &["OBJECT_EDGES"],
-    &["SILHOUETTES", "CREASES"],
-    &["SILHOUETTES", "OBJECT_EDGES"],
-    &["CREASES", "OBJECT_EDGES"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES"],
-    &["CREASES", "LEDGES"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES", "LEDGES"],
-    &["CREASES", "SECTIONS"],
-    &["SILHOUETTES", "CREASES", "OBJECT_EDGES", "SECTIONS"],
-    &[
-        "SILHOUETTES",
-        "CREASES",
-        "OBJECT_EDGES",
-        "LEDGES",
-        "SECTIONS",
-    ],
-    &["MARKS", "SILHOUETTES", "OBJECT_EDGES"],
-    &[
-        "MARKS",
-        "SILHOUETTES",
-        "OBJECT_EDGES",
-        "MULTISAMPLED_PICTURE",
-    ],
-];
+const KINDS: &str = "
+    | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES
+    | CREASES OBJECT_EDGES | SILHOUETTES CREASES OBJECT_EDGES
+    | CREASES LEDGES | SILHOUETTES CREASES OBJECT_EDGES LEDGES
+    | CREASES SECTIONS | SILHOUETTES CREASES OBJECT_EDGES SECTIONS
+    | SILHOUETTES CREASES OBJECT_EDGES LEDGES SECTIONS
+    | MARKS SILHOUETTES OBJECT_EDGES | MARKS SILHOUETTES OBJECT_EDGES MULTISAMPLED_PICTURE";
 
-/// What cracks are found by in a view, in all combinations: inputs that they need, and `EXCESS`.
+/// What cracks are found by. Without compute shaders, lines are not completed.
 fn finding() -> Vec<Variant> {
-    let mut all = Vec::new();
-    for view in subsets(&["OBLIQUE", "SAME_SIZE", "FADING"]) {
-        let mut view = [&["DEPTH"][..], &view[..]].concat();
-        if has(&view, "FADING") {
-            view.push("VISIBLE_RANGE");
-        }
-        for kinds in subsets(&["SILHOUETTES", "CREASES", "OBJECT_EDGES", "OBJECT_STYLES"]) {
-            let mut defs = [&view[..], &kinds[..]].concat();
-            if has(&kinds, "CREASES") {
-                defs.push("NORMALS");
-            }
-            if has_any(&kinds, &["OBJECT_EDGES", "OBJECT_STYLES"]) {
-                defs.push("OBJECT_IDS");
-            }
-            if has_any(&kinds, &["SILHOUETTES", "CREASES"]) {
-                defs.push("EXCESS");
-            }
-            add(&mut all, "lines/find/find.wgsl", &defs);
-            let completed = [&defs[..], &["COMPLETED"]].concat();
-            let abstracts = [&completed[..], &["ABSTRACT_LINES"]].concat();
-            for defs in [&defs, &completed, &abstracts] {
-                add(&mut all, "lines/find/cells.wgsl", defs);
-            }
-            if has(&kinds, "CREASES") {
-                let ledges = [&completed[..], &["LEDGES"]].concat();
-                add(&mut all, "lines/find/cells.wgsl", &ledges);
-            }
-        }
-        for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
-            let mut defs = [&view[..], &forms[..]].concat();
-            if has(&forms, "FAITHFUL_CREASES") {
-                defs.push("NORMALS");
-            }
-            if has(&forms, "OBJECT_STYLES") {
-                defs.push("OBJECT_IDS");
-            }
-            add(&mut all, "lines/find/faithful.wgsl", &defs);
-        }
-    }
-    all.extend(found_pairs());
-    all
-}
-
-/// The same with sections, marks, and objects that are as abstract as a whole. Without compute shaders,
-/// lines are not completed.
-fn found_pairs() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         KINDS,
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["FADING"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[&[], &["COMPLETED"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[
-            &[],
-            &["ABSTRACT_LINES"],
-            &["ABSTRACT_LINES", "OBJECT_DEPTHS"],
-        ],
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| FADING",
+        "| VISIBLE_RANGE",
+        "| COMPLETED",
+        "| OBJECT_STYLES",
+        "| ABSTRACT_LINES | ABSTRACT_LINES OBJECT_DEPTHS",
+    ];
+    const FAITHFUL: &[&str] = &[
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| FADING VISIBLE_RANGE",
+        "| FAITHFUL_SILHOUETTES",
+        "| FAITHFUL_CREASES NORMALS",
+        "| OBJECT_STYLES",
     ];
     fn by_fragments(mut names: Vec<&'static str>) -> Vec<&'static str> {
         names.retain(|name| !matches!(*name, "COMPLETED" | "LEDGES" | "OBJECT_DEPTHS"));
@@ -129,6 +52,7 @@ fn found_pairs() -> Vec<Variant> {
     [
         pairs("lines/find/cells.wgsl", LISTS, completed),
         pairs("lines/find/find.wgsl", LISTS, by_fragments),
+        pairs("lines/find/faithful.wgsl", FAITHFUL, found),
     ]
     .concat()
 }
@@ -160,39 +84,32 @@ fn found(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// The search for blocks with cracks, with jumps of the depth map, or with both.
 fn walking() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         KINDS,
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["BRIDGED"]],
-        &[
-            &[],
-            &["JUMPS", "MAP_FLAGS=0"],
-            &["JUMPS", "MAP_FLAGS=1"],
-            &["JUMPS", "MAP_FLAGS=2"],
-            &["JUMPS", "MAP_FLAGS=3"],
-        ],
-        &[&[], &["VISIBLE_RANGE"]],
+        "| OBLIQUE",
+        "| SAME_SIZE",
+        "| BRIDGED",
+        "| JUMPS MAP_FLAGS=0 | JUMPS MAP_FLAGS=1 | JUMPS MAP_FLAGS=2 | JUMPS MAP_FLAGS=3",
+        "| VISIBLE_RANGE",
     ];
-    let mut all = pairs("lines/find/walk.wgsl", LISTS, walked);
-    for flags in ["MAP_FLAGS=0", "MAP_FLAGS=1", "MAP_FLAGS=2", "MAP_FLAGS=3"] {
-        for view in subsets(&["OBLIQUE", "SAME_SIZE", "VISIBLE_RANGE"]) {
-            let jumps = ["DEPTH", "BOUNDS", "JUMPS", flags];
-            let names = [&jumps[..], &view[..]].concat();
-            add(&mut all, "lines/find/walk.wgsl", &names);
-        }
-    }
-    all
+    pairs("lines/find/walk.wgsl", LISTS, walked)
 }
 
 fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let [marks, jumps] = ["MARKS", "JUMPS"].map(|name| has(&names, name));
+    let lines = has_any(&names, &["SILHOUETTES", "CREASES", "OBJECT_EDGES"]);
     names.retain(|name| match *name {
-        "BRIDGED" | "JUMPS" => !marks,
+        "BRIDGED" => lines && !marks,
+        "JUMPS" => !marks,
         "VISIBLE_RANGE" => jumps && !marks,
         _ if name.starts_with("MAP_FLAGS") => !marks,
         _ => true,
     });
+    if lines {
+        names.push("CRACKS");
+    } else if !jumps {
+        names.extend(["JUMPS", "MAP_FLAGS=0"]);
+    }
     if has_any(&names, &["SILHOUETTES", "LEDGES"]) {
         names.push("EXCESS");
     }
@@ -202,111 +119,60 @@ fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
     if has_any(&names, &["OBJECT_EDGES", "SECTIONS"]) {
         names.push("OBJECT_IDS");
     }
-    names.extend(["DEPTH", "BOUNDS", "CRACKS"]);
+    names.extend(["DEPTH", "BOUNDS"]);
     names
 }
 
 /// What links, joins, keeps and extends lines.
 fn completing() -> Vec<Variant> {
-    let mut all = Vec::new();
-    let of_columns: [&[&str]; 6] = [
-        &[],
-        &["BLOCKS"],
-        &["BLOCKS", "COMPLETED"],
-        &["BLOCKS", "COMPLETED", "SMOOTH"],
-        &["BLOCKS", "COMPLETED", "VARIED"],
-        &["BLOCKS", "COMPLETED", "SMOOTH", "VARIED"],
+    const STORES: &[&str] = &[
+        "",
+        "BLOCKS",
+        "BLOCKS COMPLETED",
+        "BLOCKS COMPLETED SMOOTH",
+        "BLOCKS COMPLETED VARIED",
+        "BLOCKS COMPLETED SMOOTH VARIED",
     ];
-    for defs in of_columns {
-        add(&mut all, "lines/draw/columns.wgsl", defs);
-    }
-    for last in subsets(&["LAST"]) {
-        add(&mut all, "lines/link/link.wgsl", &last);
-    }
-    add(&mut all, "lines/link/join.wgsl", &[]);
-    add(&mut all, "lines/link/bridge.wgsl", &[]);
-    add(&mut all, "lines/tiles/tiles.wgsl", &[]);
-    add(&mut all, "lines/tiles/tile.wgsl", &[]);
-    let motions: [&[&str]; 3] = [&[], &["MOTION", "DEPTH"], &["MOTION", "DEPTH", "OBLIQUE"]];
-    for motion in motions {
-        add(&mut all, "lines/memory/persist.wgsl", motion);
-    }
-    for varied in subsets(&["VARIED", "BRIDGED"]) {
-        let defs = [&["BLOCKS", "SMOOTH"][..], &varied[..]].concat();
-        add(&mut all, "lines/draw/ends.wgsl", &defs);
-    }
-    all
+    [
+        each("lines/draw/columns.wgsl", STORES),
+        each("lines/link/link.wgsl", &["", "LAST"]),
+        each("lines/link/join.wgsl", &[""]),
+        each("lines/link/bridge.wgsl", &[""]),
+        each("lines/tiles/tiles.wgsl", &[""]),
+        each("lines/tiles/tile.wgsl", &[""]),
+        each(
+            "lines/memory/persist.wgsl",
+            &["", "MOTION DEPTH", "MOTION DEPTH OBLIQUE"],
+        ),
+        pairs(
+            "lines/draw/ends.wgsl",
+            &["BLOCKS SMOOTH", "| VARIED", "| BRIDGED"],
+            |names| names,
+        ),
+    ]
+    .concat()
 }
 
 /// What leaves out cracks and makes lines smooth, wide and faint.
 fn settling() -> Vec<Variant> {
-    let mut all = Vec::new();
-    let file = "lines/link/settle.wgsl";
-    for smooth in [&[][..], &["SMOOTH"], &["SMOOTH", "FOLDS", "DEPTH"]] {
-        for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
-            for bridged in subsets(&["BRIDGED", "LEDGES", "RIMS"]) {
-                let mut defs = [smooth, weight, &bridged[..]].concat();
-                if !weight.is_empty() || has_any(&defs, &["FOLDS", "RIMS"]) {
-                    defs.extend(["DEPTH", "EDITS"]);
-                }
-                add(&mut all, file, &defs);
-            }
-        }
-        let weights: [&[&str]; 10] = [
-            &["IN_LAYERS"],
-            &["IN_LAYERS", "DEPTH_BORDERS"],
-            &["IN_LAYERS", "VISIBLE_RANGE", "DEPTH_BORDERS"],
-            &["IN_LAYERS", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
-            &["ABSTRACT_CREASES", "VISIBLE_RANGE"],
-            &["ABSTRACT_CREASES", "OBJECT_DEPTHS", "OBJECT_IDS"],
-            &[
-                "ABSTRACT_CREASES",
-                "IN_LAYERS",
-                "OBJECT_DEPTHS",
-                "OBJECT_IDS",
-            ],
-            &["SURFACE_WEIGHT", "WIDTH_MAP"],
-            &["SURFACE_WEIGHT", "LIGHT_WEIGHT", "NORMALS"],
-            &["SURFACE_WEIGHT", "WIDTH_MAP", "LIGHT_WEIGHT", "NORMALS"],
-        ];
-        for weight in weights {
-            let always = &["WEIGHT", "EDITS", "DEPTH"];
-            add(&mut all, file, &[smooth, &always[..], weight].concat());
-        }
-    }
-    all.extend(settled_pairs());
-    all
-}
-
-/// Every pair of what completing depends on.
-fn settled_pairs() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
-        &[&[], &["SMOOTH"], &["SMOOTH", "FOLDS"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["BRIDGED"]],
-        &[&[], &["LEDGES"]],
-        &[&[], &["RIMS"]],
-        &[&[], &["KIND_WEIGHT"], &["KIND_WEIGHT", "OBJECT_IDS"]],
-        &[&[], &["LIGHT_WEIGHT"]],
-        &[&[], &["WIDTH_MAP"]],
-        &[&[], &["PERSPECTIVE_WEIGHT"]],
-        &[&[], &["NIB_WEIGHT"]],
-        &[&[], &["TAPER_WEIGHT"]],
-        &[&[], &["BUDGET"]],
-        &[&[], &["FOG"]],
-        &[&[], &["IN_FOCUS"]],
-        &[
-            &[],
-            &["IN_LAYERS"],
-            &["IN_LAYERS", "DEPTH_BORDERS"],
-            &["IN_LAYERS", "OBJECT_DEPTHS"],
-        ],
-        &[
-            &[],
-            &["ABSTRACT_CREASES"],
-            &["ABSTRACT_CREASES", "OBJECT_DEPTHS"],
-        ],
-        &[&[], &["VISIBLE_RANGE"]],
+    const LISTS: &[&str] = &[
+        "| SMOOTH | SMOOTH FOLDS",
+        "| OBLIQUE",
+        "| BRIDGED",
+        "| LEDGES",
+        "| RIMS",
+        "| KIND_WEIGHT | KIND_WEIGHT OBJECT_IDS",
+        "| LIGHT_WEIGHT",
+        "| WIDTH_MAP",
+        "| PERSPECTIVE_WEIGHT",
+        "| NIB_WEIGHT",
+        "| TAPER_WEIGHT",
+        "| BUDGET",
+        "| FOG",
+        "| IN_FOCUS",
+        "| IN_LAYERS | IN_LAYERS DEPTH_BORDERS | IN_LAYERS OBJECT_DEPTHS",
+        "| ABSTRACT_CREASES | ABSTRACT_CREASES OBJECT_DEPTHS",
+        "| VISIBLE_RANGE",
     ];
     pairs("lines/link/settle.wgsl", LISTS, settled)
 }
@@ -346,68 +212,52 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// What draws ink, reads samples, and remembers.
 fn drawing() -> Vec<Variant> {
-    let mut all = Vec::new();
-    for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for more in [&[][..], &["SURFACE"], &["SURFACE", "INWARD"]] {
-            for line in subsets(&["BOIL", "TAPER", "SPREAD", "STREAKS"]) {
-                let defs = [styles, more, &line[..]].concat();
-                add(&mut all, "lines/draw/strokes.wgsl", &defs);
-            }
-        }
-        for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
-            for store in [
-                &[][..],
-                &["BLOCKS"],
-                &["BLOCKS", "COMPLETED"],
-                &["BLOCKS", "COMPLETED", "SMOOTH"],
-            ] {
-                for sheet in subsets(&["SPREAD", "STREAKS"]) {
-                    let defs = [styles, search, store, &sheet[..]].concat();
-                    add(&mut all, "lines/draw/draw.wgsl", &defs);
-                }
-                let bridged = &["OWNERS", "BRIDGED", "SURFACE", "INWARD"];
-                if !store.is_empty() {
-                    let defs = [styles, search, store, &bridged[..]].concat();
-                    add(&mut all, "lines/draw/draw.wgsl", &defs);
-                }
-            }
-        }
-    }
-    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
-        let defs = [&["DEPTH", "MULTISAMPLED"][..], &view[..]].concat();
-        add(&mut all, "lines/find/resolve.wgsl", &defs);
-    }
-    for stored in [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]] {
-        let defs = [&["OBJECT_STYLES"][..], stored].concat();
-        add(&mut all, "lines/record/marks.wgsl", &defs);
-    }
-    for view in subsets(&["OBLIQUE"]) {
-        let defs = [&["DEPTH"][..], &view[..]].concat();
-        add(&mut all, "lines/memory/remember.wgsl", &defs);
-    }
-    all.extend(drawn_pairs());
-    all
+    const STROKES: &[&str] = &[
+        "| OBJECT_STYLES",
+        "| SURFACE | SURFACE INWARD",
+        "| BOIL",
+        "| TAPER",
+        "| SPREAD",
+        "| STREAKS",
+    ];
+    const LISTS: &[&str] = &[
+        "| NEIGHBOURS | COLUMNS",
+        "| BLOCKS | BLOCKS COMPLETED | BLOCKS COMPLETED SMOOTH",
+        "| VARIED",
+        "| OBJECT_STYLES",
+        "| SURFACE | SURFACE INWARD",
+        "| BRIDGED",
+        "| BOIL",
+        "| SPREAD",
+        "| STREAKS",
+    ];
+    const RESOLVED: &[&str] = &[
+        "DEPTH MULTISAMPLED",
+        "| OBLIQUE",
+        "| NORMALS",
+        "| OBJECT_IDS",
+        "| WIDTH_MAP",
+    ];
+    const STORED: &str = "| STORED_SRGB | STORED_OKLAB";
+    [
+        pairs("lines/draw/draw.wgsl", LISTS, drawn),
+        pairs("lines/draw/strokes.wgsl", STROKES, with_ids),
+        pairs("lines/find/resolve.wgsl", RESOLVED, |names| names),
+        pairs(
+            "lines/record/marks.wgsl",
+            &["OBJECT_STYLES", STORED],
+            |names| names,
+        ),
+        each("lines/memory/remember.wgsl", &["DEPTH", "DEPTH OBLIQUE"]),
+    ]
+    .concat()
 }
 
-/// Every pair of what drawing ink depends on.
-fn drawn_pairs() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
-        &[&[], &["NEIGHBOURS"], &["COLUMNS"]],
-        &[
-            &[],
-            &["BLOCKS"],
-            &["BLOCKS", "COMPLETED"],
-            &["BLOCKS", "COMPLETED", "SMOOTH"],
-        ],
-        &[&[], &["VARIED"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[&[], &["SURFACE"], &["SURFACE", "INWARD"]],
-        &[&[], &["BRIDGED"]],
-        &[&[], &["BOIL"]],
-        &[&[], &["SPREAD"]],
-        &[&[], &["STREAKS"]],
-    ];
-    pairs("lines/draw/draw.wgsl", LISTS, drawn)
+fn with_ids(mut names: Vec<&'static str>) -> Vec<&'static str> {
+    if has(&names, "OBJECT_STYLES") {
+        names.push("OBJECT_IDS");
+    }
+    names
 }
 
 fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
@@ -421,37 +271,25 @@ fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "BRIDGED" => owners && blocks,
         _ => true,
     });
-    if has(&names, "OBJECT_STYLES") {
-        names.push("OBJECT_IDS");
-    }
     if owners {
         names.push("OWNERS");
     }
-    names
+    with_ids(names)
 }
 
-/// Every pair of what finding depends on.
 #[test]
-#[ignore = "long: hundreds of shaders"]
 fn passes_that_find_lines_compose_and_validate() {
-    check(&found_pairs());
+    check(&finding());
     check(&walking());
 }
 
 #[test]
-#[ignore = "long: every combination of what lines are found by"]
-fn every_pass_that_finds_lines_composes_and_validates() {
-    check(&finding());
-}
-
-#[test]
-fn every_pass_that_completes_lines_composes_and_validates() {
+fn passes_that_complete_lines_compose_and_validate() {
     check(&completing());
     check(&settling());
 }
 
 #[test]
-#[ignore = "long: hundreds of shaders"]
-fn every_pass_that_draws_lines_composes_and_validates() {
+fn passes_that_draw_lines_compose_and_validate() {
     check(&drawing());
 }

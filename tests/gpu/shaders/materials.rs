@@ -6,7 +6,7 @@ use bevy_comics_testkit::wgsl::Library;
 
 use super::{
     Variant,
-    covering::{Choice, covering, definitions, has},
+    covering::{has, pairs},
     shader,
 };
 use crate::{prelude::*, toon_shaders::ALWAYS};
@@ -24,72 +24,42 @@ pub fn variants() -> Vec<Variant> {
     [ink(), transparent()].concat()
 }
 
-const PROJECTIONS: &[Choice] = &[
-    &["VIEW_PROJECTION_PERSPECTIVE"],
-    &["VIEW_PROJECTION_ORTHOGRAPHIC"],
-    &["VIEW_PROJECTION_NONSTANDARD"],
-];
+const PROJECTIONS: &str = "VIEW_PROJECTION_PERSPECTIVE | VIEW_PROJECTION_ORTHOGRAPHIC
+    | VIEW_PROJECTION_NONSTANDARD";
 
 /// The ribbons of motion lines, which are in no prepass.
 fn ink() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         PROJECTIONS,
-        &[&[], &["MULTISAMPLED"]],
-        &[
-            &[],
-            &["DEPTH_PREPASS"],
-            &["DEPTH_PREPASS", "NORMAL_PREPASS", "MOTION_VECTOR_PREPASS"],
-        ],
-        &[
-            &[],
-            &[
-                "TONEMAP_IN_SHADER",
-                "TONEMAP_METHOD_REINHARD",
-                "DEBAND_DITHER",
-            ],
-            &["TONEMAP_IN_SHADER", "TONEMAP_METHOD_TONY_MC_MAPFACE"],
-        ],
-        &[&[], &["DISTANCE_FOG"]],
+        "| MULTISAMPLED",
+        "| DEPTH_PREPASS | DEPTH_PREPASS NORMAL_PREPASS MOTION_VECTOR_PREPASS",
+        "| TONEMAP_IN_SHADER TONEMAP_METHOD_REINHARD DEBAND_DITHER \
+         | TONEMAP_IN_SHADER TONEMAP_METHOD_TONY_MC_MAPFACE",
+        "| DISTANCE_FOG",
     ];
-    let mesh = |mut names: Vec<&'static str>| {
-        names.extend(ALWAYS);
-        names.extend(["VERTEX_UVS", "VERTEX_UVS_A"]);
-        names
-    };
-    let rows = covering(LISTS, mesh).rows;
-    let of = |row: &Vec<&'static str>| ("motion_lines/ink.wgsl", definitions(row));
-    rows.iter().map(of).collect()
+    pairs("motion_lines/ink.wgsl", LISTS, in_main_pass)
 }
 
 /// Transparent meshes that write depth, with the definitions of the engine's prepass. Materials without
 /// bind groups (`BINDLESS`) are known where pixels below an alpha are left out.
 fn transparent() -> Vec<Variant> {
-    const LISTS: &[&[Choice]] = &[
+    const LISTS: &[&str] = &[
         PROJECTIONS,
-        &[
-            &[],
-            &["NORMAL_PREPASS", "VERTEX_NORMALS"],
-            &["NORMAL_PREPASS", "VERTEX_NORMALS", "VERTEX_TANGENTS"],
-        ],
-        &[&[], &["MOTION_VECTOR_PREPASS"]],
-        &[&[], &["ALPHA_CUTOFF"], &["ALPHA_CUTOFF", "BINDLESS"]],
-        &[
-            &[],
-            &["VERTEX_UVS", "VERTEX_UVS_A"],
-            &["VERTEX_UVS", "VERTEX_UVS_B"],
-            &[
-                "VERTEX_UVS",
-                "VERTEX_UVS_A",
-                "VERTEX_UVS_B",
-                "STANDARD_MATERIAL_BASE_COLOR_UV_B",
-            ],
-        ],
-        &[&[], &["VERTEX_COLORS"]],
-        &[&[], &["VISIBILITY_RANGE_DITHER"]],
+        "| NORMAL_PREPASS VERTEX_NORMALS | NORMAL_PREPASS VERTEX_NORMALS VERTEX_TANGENTS",
+        "| MOTION_VECTOR_PREPASS",
+        "| ALPHA_CUTOFF | ALPHA_CUTOFF BINDLESS",
+        "| VERTEX_UVS VERTEX_UVS_A | VERTEX_UVS VERTEX_UVS_B \
+         | VERTEX_UVS VERTEX_UVS_A VERTEX_UVS_B STANDARD_MATERIAL_BASE_COLOR_UV_B",
+        "| VERTEX_COLORS",
+        "| VISIBILITY_RANGE_DITHER",
     ];
-    let rows = covering(LISTS, in_prepass).rows;
-    let of = |row: &Vec<&'static str>| ("objects/transparent/transparent.wgsl", definitions(row));
-    rows.iter().map(of).collect()
+    pairs("objects/transparent/transparent.wgsl", LISTS, in_prepass)
+}
+
+fn in_main_pass(mut names: Vec<&'static str>) -> Vec<&'static str> {
+    names.extend(ALWAYS);
+    names.extend(["VERTEX_UVS", "VERTEX_UVS_A"]);
+    names
 }
 
 fn in_prepass(mut names: Vec<&'static str>) -> Vec<&'static str> {

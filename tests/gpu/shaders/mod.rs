@@ -9,7 +9,6 @@ mod fused;
 mod lines;
 pub mod materials;
 mod parts;
-mod production;
 mod scene;
 
 use std::fs;

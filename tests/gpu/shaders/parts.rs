@@ -2,180 +2,100 @@
 
 use super::{
     Definitions,
-    covering::{Choice, covering, definitions, has},
-    effects, flags,
+    covering::{fewest, has, rows},
+    effects::{self, Modes, flag},
+    flags,
     fused::of_pass,
-    optional,
+    product,
 };
+use crate::prelude::*;
 
 pub fn variants() -> Vec<Definitions> {
-    [divided(), left_out(), overlays(), bases()].concat()
+    [divided(), overlays(), bases()].concat()
+}
+
+/// The passes of a plan whose effects read the picture at other places: those of each effect, those
+/// that draw the means over boxes or the numbers that it reads, and earlier ones, which have the
+/// settings of the effect but not the effect.
+fn divided() -> Vec<Definitions> {
+    const FORMS: &[&str] = &[
+        "| CONTINUED",
+        "| LAYER",
+        "| INSIDE",
+        "| FINISH",
+        "| MULTISAMPLED",
+        "| UNSTYLED_COLORS",
+        "| UNSTYLED_PRINT",
+    ];
+    let ids = flags(&["OBJECT_STYLES", "OBJECT_IDS", "UNSTYLED"]);
+    let forms = rows(FORMS, |names| names);
+    let effects = effects::all().iter().flat_map(passes_of).collect();
+    let all = product(&[effects, forms]);
+    all.iter().map(|parts| of_pass(&[parts, &ids])).collect()
+}
+
+fn passes_of(Modes { effect, modes }: &Modes) -> Vec<Definitions> {
+    let name = effect.name.to_uppercase();
+    let mut all = fewest(modes.clone());
+    let reads = |mode: &Definitions, what| mode.contains(&(what, None));
+    for mode in all.clone() {
+        if reads(&mode, "BOX_STATISTICS") {
+            let means = [
+                flag("DRAWS_BOX_STATISTICS".into()),
+                flag(format!("BOXES_{name}")),
+            ];
+            let down = [&means[..], &flags(&["BOX_STATISTICS_DOWN"])].concat();
+            let mut across = [&mode[..], &means].concat();
+            across.retain(|(name, _)| *name != "BOX_STATISTICS");
+            for reach in [None, Some(1), Some(6)] {
+                let steps = reach.map(reaches).unwrap_or_default();
+                all.push([&across[..], &steps].concat());
+                all.push([&mode[..], &down, &steps].concat());
+            }
+        }
+        if reads(&mode, "AUX_SCALAR") {
+            let mut numbers = mode;
+            numbers.retain(|(name, _)| *name != "AUX_SCALAR");
+            numbers.extend(flags(&["DRAWS_NUMBERS"]));
+            numbers.push(flag(format!("NUMBERS_{name}")));
+            all.push(numbers);
+        }
+    }
+    let mut earlier = modes[0].clone();
+    earlier.extend([("LAYER", None), flag(format!("WITHOUT_{name}"))]);
+    all.push(earlier);
+    all
 }
 
 /// The definitions of boxes that reach so many pixels.
 fn reaches(pixels: usize) -> Definitions {
-    let steps = [
-        "REACHES_ONE",
-        "REACHES_TWO",
-        "REACHES_THREE",
-        "REACHES_FOUR",
-        "REACHES_FIVE",
-        "REACHES_SIX",
-    ];
-    [flags(&["BOX_REACH"]), flags(&steps[..pixels])].concat()
-}
-
-/// Passes that focus, or draw what that reads.
-fn focused() -> Vec<Definitions> {
-    let focus = |style, names: &[&'static str]| {
-        let style = vec![("FOCUS_STYLE", Some(style))];
-        [flags(&["FOCUS", "DEPTH"]), style, flags(names)].concat()
-    };
-    vec![
-        focus(0, &[]),
-        focus(0, &["AUX_SCALAR", "MULTISAMPLED"]),
-        focus(0, &["DRAWS_NUMBERS", "NUMBERS_FOCUS"]),
-        [focus(1, &["AUX_SCALAR"]), vec![("FOCUS_PARALLEL", Some(1))]].concat(),
-        focus(3, &[]),
-        focus(4, &[]),
-        focus(2, &["BOX_STATISTICS", "MULTISAMPLED"]),
-        focus(
-            2,
-            &[
-                "DRAWS_BOX_STATISTICS",
-                "BOX_STATISTICS_DOWN",
-                "BOX_STATISTICS",
-                "BOXES_FOCUS",
-            ],
-        ),
-    ]
-}
-
-/// Passes that paint, or draw what that reads.
-fn painted() -> Vec<Definitions> {
-    let boxes = flags(&[
-        "PAINT",
-        "BOX_STATISTICS",
-        "DRAWS_BOX_STATISTICS",
-        "BOX_STATISTICS_DOWN",
-        "BOXES_PAINT",
-    ]);
-    vec![
-        flags(&["PAINT", "BOX_STATISTICS"]),
-        flags(&["PAINT", "BOX_STATISTICS", "PAINT_FIGURES", "MULTISAMPLED"]),
-        flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
-        flags(&[
-            "PAINT",
-            "DRAWS_BOX_STATISTICS",
-            "BOXES_PAINT",
-            "MAP",
-            "DEPTH",
-        ]),
-        [
-            flags(&["PAINT", "BOX_STATISTICS", "PAINT_WHOLE", "PAINT_FIGURES"]),
-            vec![("PAINT_EIGHTH", Some(1))],
-        ]
-        .concat(),
-        [
-            flags(&["PAINT", "DRAWS_BOX_STATISTICS", "BOXES_PAINT"]),
-            reaches(1),
-        ]
-        .concat(),
-        [boxes.clone(), reaches(6)].concat(),
-        boxes,
-    ]
-}
-
-/// The passes of a plan whose effects read the picture at other places.
-fn divided() -> Vec<Definitions> {
-    let forms = [
-        "CONTINUED",
-        "LAYER",
-        "INSIDE",
-        "FINISH",
-        "UNSTYLED_COLORS",
-        "UNSTYLED_PRINT",
-    ];
-    let printed = vec![
-        vec![],
-        flags(&["MISREGISTRATION"]),
-        flags(&["MISREGISTRATION", "MISREGISTRATION_BLACK_STAYS"]),
-        flags(&["MISREGISTRATION", "WITHOUT_MISREGISTRATION", "TONE_BANDS"]),
-        flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
-        flags(&[
-            "OUTLINES",
-            "LINES",
-            "LINE_OWNERS",
-            "SURFACE_LINES",
-            "MISREGISTRATION",
-        ]),
-    ];
-    let all_effects = [printed, painted(), focused()].concat();
-    let ids = flags(&["OBJECT_STYLES", "OBJECT_IDS", "UNSTYLED"]);
-    let mut all = Vec::new();
-    for form in optional(&forms) {
-        let with = |effects: &Definitions| of_pass(&[&form, effects, &ids]);
-        all.extend(all_effects.iter().map(with));
-    }
-    all
-}
-
-/// An earlier pass has the settings of the effects of later ones, but not these effects.
-fn left_out() -> Vec<Definitions> {
-    let without = |(name, modes): (&'static str, Vec<Definitions>)| {
-        let left: &'static str = format!("WITHOUT_{}", name.to_uppercase()).leak();
-        of_pass(&[&modes[0], &[("LAYER", None), (left, None)]])
-    };
-    effects::all().into_iter().map(without).collect()
-}
-
-fn rows(
-    lists: &[&[Choice]],
-    resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
-) -> Vec<Definitions> {
-    let found = covering(lists, resolved);
-    let of_row = |names: &Vec<&'static str>| of_pass(&[&definitions(names)]);
-    found.rows.iter().map(of_row).collect()
+    let steps = ["ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX"];
+    let steps = steps[..pixels]
+        .iter()
+        .map(|step| flag(format!("REACHES_{step}")));
+    steps.chain([flag("BOX_REACH".into())]).collect()
 }
 
 /// Passes that are blended over the picture: all of their effects draw over it.
 fn overlays() -> Vec<Definitions> {
-    const LISTS: &[&[Choice]] = &[
-        &[
-            &["OUTLINES", "LINES"],
-            &["CONTOURS"],
-            &["OUTLINES", "LINES", "CONTOURS"],
-            &["FOCUS"],
-            &["FOCUS", "OUTLINES", "LINES", "CONTOURS"],
-        ],
-        &[
-            &["CONTOURS_OPERATOR=0"],
-            &["CONTOURS_OPERATOR=1"],
-            &["CONTOURS_OPERATOR=2"],
-            &["CONTOURS_OPERATOR=3"],
-        ],
-        &[
-            &[],
-            &["CONTOURS_WHOLE"],
-            &["CONTOURS_WHOLE", "CONTOURS_SINGLE_RING"],
-        ],
-        &[&[], &["CONTOURS_STEADY"]],
-        &[&["FOCUS_PARALLEL=0"], &["FOCUS_PARALLEL=1"]],
+    const LISTS: &[&str] = &[
+        "OUTLINES LINES | CONTOURS | OUTLINES LINES CONTOURS \
+         | FOCUS | FOCUS OUTLINES LINES CONTOURS",
+        "CONTOURS_OPERATOR=0 | CONTOURS_OPERATOR=1 | CONTOURS_OPERATOR=2 | CONTOURS_OPERATOR=3",
+        "| CONTOURS_WHOLE | CONTOURS_WHOLE CONTOURS_SINGLE_RING",
+        "| CONTOURS_STEADY",
+        "FOCUS_PARALLEL=0 | FOCUS_PARALLEL=1",
         // The styles of lines, and objects that colour effects leave alone.
-        &[&[], &["OBJECT_STYLES"], &["OBJECT_STYLES", "OBJECT_IDS"]],
-        &[&[], &["INSIDE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["MULTISAMPLED"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[
-            &["MAP_FLAGS=0"],
-            &["MAP_FLAGS=1"],
-            &["MAP_FLAGS=2"],
-            &["MAP_FLAGS=3"],
-        ],
+        "| OBJECT_STYLES | OBJECT_STYLES OBJECT_IDS",
+        "| INSIDE",
+        "| SAME_SIZE",
+        "| MULTISAMPLED",
+        "| OBLIQUE",
+        "| VISIBLE_RANGE",
+        "MAP_FLAGS=0 | MAP_FLAGS=1 | MAP_FLAGS=2 | MAP_FLAGS=3",
     ];
-    rows(LISTS, overlay)
+    let rows = rows(LISTS, overlay);
+    rows.iter().map(|row| of_pass(&[row])).collect()
 }
 
 fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
@@ -205,33 +125,24 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// All pixels, before tiles with all effects: without those effects that change only tiles.
 fn bases() -> Vec<Definitions> {
-    const LISTS: &[&[Choice]] = &[
-        &[
-            &["SKETCH"],
-            &["SKETCH", "CONTOURS"],
-            &["CONTOURS", "TONE_BANDS"],
-            &["CONTOURS", "OUTLINES"],
-        ],
+    const LISTS: &[&str] = &[
+        "SKETCH | SKETCH CONTOURS | CONTOURS TONE_BANDS | CONTOURS OUTLINES",
         // An effect of a game may not know how far it reads lines.
-        &[&[], &["WITHOUT_LINES"]],
-        &[&[], &["SKETCH_FADES"]],
-        &[&[], &["OBJECT_STYLES"]],
-        &[
-            &[],
-            &["LINE_OWNERS"],
-            &["LINE_OWNERS", "IN_LAYERS"],
-            &["LINE_OWNERS", "IN_LAYERS", "DEPTH_BORDERS"],
-        ],
-        &[&[], &["CONTINUED"]],
-        &[&[], &["FINISH"]],
-        &[&[], &["INSIDE"]],
-        &[&[], &["SAME_SIZE"]],
-        &[&[], &["MULTISAMPLED"]],
-        &[&[], &["OBLIQUE"]],
-        &[&[], &["VISIBLE_RANGE"]],
-        &[&[], &["STORED_SRGB"], &["STORED_OKLAB"]],
+        "| WITHOUT_LINES",
+        "| SKETCH_FADES",
+        "| OBJECT_STYLES",
+        "| LINE_OWNERS | LINE_OWNERS IN_LAYERS | LINE_OWNERS IN_LAYERS DEPTH_BORDERS",
+        "| CONTINUED",
+        "| FINISH",
+        "| INSIDE",
+        "| SAME_SIZE",
+        "| MULTISAMPLED",
+        "| OBLIQUE",
+        "| VISIBLE_RANGE",
+        "| STORED_SRGB | STORED_OKLAB",
     ];
-    rows(LISTS, base)
+    let rows = rows(LISTS, base);
+    rows.iter().map(|row| of_pass(&[row])).collect()
 }
 
 fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {

@@ -1,6 +1,10 @@
 //! Passes that read depth, normals and objects of the scene.
 
-use super::{Variant, check, covering::definitions, subsets};
+use super::{
+    Variant, check,
+    covering::{definitions, each, pairs},
+    subsets,
+};
 
 /// Everything that the tests of this file compose.
 pub fn variants() -> Vec<Variant> {
@@ -33,35 +37,22 @@ fn depths() -> Vec<Variant> {
 }
 
 fn objects() -> Vec<Variant> {
-    let mut all = [
-        with_subsets("objects/depths.wgsl", &[], &["VISIBLE_RANGE"]),
-        with_subsets("objects/depth_test/count.wgsl", &[], &["MULTISAMPLED"]),
-        with_subsets(
+    const WIDTHS: &str = "| LINE_WIDTHS | LINE_WIDTHS VERTEX_WIDTHS";
+    const DEPTHS: &str = "| TOLERANT | TOLERANT TOLERANT_MULTISAMPLED \
+        | TOLERANT TOLERANT_MULTISAMPLED SAMPLE_SHADING";
+    let same = |names| names;
+    [
+        each("objects/depths.wgsl", &["", "VISIBLE_RANGE"]),
+        each("objects/depth_test/count.wgsl", &["", "MULTISAMPLED"]),
+        each(
             "objects/transparent/copy_normals.wgsl",
-            &[],
-            &["MULTISAMPLED"],
+            &["", "MULTISAMPLED", "MULTISAMPLED SAMPLE_SHADING"],
         ),
-        vec![(
-            "objects/transparent/copy_normals.wgsl",
-            definitions(&["MULTISAMPLED", "SAMPLE_SHADING"]),
-        )],
+        // `objects/items.rs` builds both.
+        pairs("objects/ids.wgsl", &[WIDTHS, DEPTHS], same),
+        pairs("objects/sections.wgsl", &[WIDTHS, DEPTHS], same),
     ]
-    .concat();
-    for widths in [&[][..], &["LINE_WIDTHS"], &["LINE_WIDTHS", "VERTEX_WIDTHS"]] {
-        for depth in [
-            &[][..],
-            &["TOLERANT"],
-            &["TOLERANT", "TOLERANT_MULTISAMPLED"],
-            &["TOLERANT", "TOLERANT_MULTISAMPLED", "SAMPLE_SHADING"],
-        ] {
-            let defs = [widths, depth].concat();
-            // `objects/pipeline.rs` builds both.
-            for file in ["objects/ids.wgsl", "objects/sections.wgsl"] {
-                all.push((file, definitions(&defs)));
-            }
-        }
-    }
-    all
+    .concat()
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Reference of `lines/abstraction.wgsl`, and of bands that split in `effect/color.wgsl`.
+//! Reference of `lines/modifiers/abstraction.wgsl`, and of bands that split in `effect/color.wgsl`.
 
 use super::{mix, smoothstep, tone_bands::band_tone};
 

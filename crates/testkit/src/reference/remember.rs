@@ -1,4 +1,4 @@
-//! Reference of `lines/remember.wgsl` and `lines/memory.wgsl`: ink that remembers the frames
+//! Reference of `lines/memory/remember.wgsl` and `lines/memory/memory.wgsl`: ink that remembers the frames
 //! before.
 
 use super::{Rgb, edge::is_in_front};
