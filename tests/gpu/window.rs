@@ -71,10 +71,15 @@ impl Window {
         let opened = OPENED.fetch_add(1, Ordering::Relaxed);
         let number = 100 + (16 * std::process::id() + opened) % 20_000;
         let display = format!(":{number}");
-        // Without key repeat: slow frames would make one press several.
-        let screen = format!("{display} -screen 0 {}x{}x24 -r", size[0], size[1]);
         let server = tool("Xvfb")
-            .args(screen.split(' '))
+            .args([
+                &display,
+                "-screen",
+                "0",
+                &format!("{}x{}x24", size[0], size[1]),
+            ])
+            // No key repeat: slow frames would make one press several.
+            .arg("-r")
             .stderr(Stdio::null())
             .spawn()
             .expect("Xvfb starts");
@@ -85,21 +90,22 @@ impl Window {
             assert!(started.elapsed() < PATIENCE, "the X server does not start");
             sleep(Duration::from_millis(20));
         }
-        fs::write(folder.join("start.comic.ron"), START).expect("written");
-        let view = format!("--size {}x{} --scale {scale}", size[0], size[1]);
-        let mut app = Command::new(program);
-        app.args("--scene teapot --memory none --closed".split(' '))
-            .args(view.split(' '));
-        for (option, name) in [
-            ("--style", "start.comic.ron"),
-            ("--state", "state.json"),
-            ("--styles", "styles"),
-            ("--shadings", "shadings"),
-            ("--pictures", "pictures"),
-        ] {
-            app.arg(option).arg(folder.join(name));
-        }
-        let app = app
+        let start = folder.join("start.comic.ron");
+        fs::write(&start, START).expect("written");
+        let app = Command::new(program)
+            .args(["--scene", "teapot", "--style"])
+            .arg(&start)
+            .args(["--memory", "none", "--closed"])
+            .args(["--size", &format!("{}x{}", size[0], size[1])])
+            .args(["--scale", &scale.to_string()])
+            .arg("--state")
+            .arg(folder.join("state.json"))
+            .arg("--styles")
+            .arg(folder.join("styles"))
+            .arg("--shadings")
+            .arg(folder.join("shadings"))
+            .arg("--pictures")
+            .arg(folder.join("pictures"))
             .args(arguments)
             .env("DISPLAY", &display)
             .env("WINIT_UNIX_BACKEND", "x11")
