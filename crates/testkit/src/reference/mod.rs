@@ -34,7 +34,6 @@ pub mod hatching;
 pub mod histogram;
 pub mod light;
 pub mod link;
-pub mod lives;
 pub mod map;
 pub mod misregistration;
 pub mod nested;
