@@ -56,8 +56,10 @@ fn links_and_commands_of_the_pages_lead_somewhere() {
         }
         for command in page.split("--example ").skip(1) {
             let name = command.split([' ', '`', '\n', ':']).next().expect("a name");
-            let source = root.join("examples").join(name);
-            let exists = source.with_extension("rs").exists() || source.join("main.rs").exists();
+            let exists = ["examples", "tools"].iter().any(|folder| {
+                let source = root.join(folder).join(name);
+                source.with_extension("rs").exists() || source.join("main.rs").exists()
+            });
             assert!(exists, "{}: there is no example {name}", path.display());
             commands += 1;
         }
@@ -140,29 +142,18 @@ fn the_reference_of_the_format_is_that_of_the_types() {
 mod reference {
     use std::fmt::Write;
 
-    use std::collections::BTreeMap;
-
     use bevy::reflect::{NamedField, TypeInfo, Typed, enums::VariantInfo};
     use bevy_comics::{
         ComicStyle, DepthMap,
         effect::{EffectRegistry, EffectType, FieldRange},
     };
 
-    /// The types with sections of their own, in their order. Those of other effects follow.
-    const FIRST: &str = "\
-        DepthMap DepthMapping RangeSmoothing ReductionMethod ToneBands Equations Desaturation \
-        Colorization ColorizationMode Abstraction ColorHarmony HarmonyMode HarmonyCurve DepthLayers \
-        DepthLayer Granularity LayerBorders Paint PaintKernel Focus FocusAt FocusStyle \
-        Misregistration Halftone HalftoneMode ScreenShape ScreenSampling ScreenAnchor BlackFlats \
-        Contours ContourOperator Outlines Silhouettes Creases ObjectEdges LineResponse LineWeight \
-        LineBoil LineColor LineFog Sketch";
-
     const HEAD: &str = "\
 # The format of style files
 
 A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic.ron`, and holds one
-`ComicStyle`. `version` is the version of the format and must be there. This page is about version 2; a file of
-version 1 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
+`ComicStyle`. `version` is the version of the format and must be there. This page is about version 3; a file of
+version 2 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
 is an error that names line and column. Every other entry is optional: an effect that is left out is off (in a
 partial style: as the camera has it), a field that is left out has its default. Colours are `\"#rrggbb\"`,
 `\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
@@ -266,18 +257,18 @@ This page is made from the types by a test, which fails where the two differ.
         }
     }
 
-    type Types = BTreeMap<&'static str, &'static TypeInfo>;
-
-    /// Adds a type and those of its fields, by name.
-    fn add_types(info: &'static TypeInfo, types: &mut Types) {
-        if types
-            .insert(info.type_path_table().short_path(), info)
-            .is_some()
-        {
+    /// The sections of a type of this crate and of those of its fields that have none yet.
+    fn sections(info: &'static TypeInfo, page: &mut String) {
+        let table = info.type_path_table();
+        let is_ours = table.crate_name() == Some("bevy_comics");
+        if page.contains(&format!("\n## {}\n", table.short_path())) {
             return;
         }
+        if is_ours {
+            section_of(info, page);
+        }
         let fields: Vec<Option<&TypeInfo>> = match info {
-            TypeInfo::Struct(info) => info.iter().map(NamedField::type_info).collect(),
+            TypeInfo::Struct(info) if is_ours => info.iter().map(NamedField::type_info).collect(),
             TypeInfo::Enum(info) => {
                 let inner = info.iter().flat_map(|variant| match variant {
                     VariantInfo::Struct(inner) => inner.iter().map(NamedField::type_info).collect(),
@@ -286,10 +277,11 @@ This page is made from the types by a test, which fails where the two differ.
                 });
                 inner.collect()
             }
+            TypeInfo::List(info) => vec![info.item_info()],
             _ => Vec::new(),
         };
         for field in fields.into_iter().flatten() {
-            add_types(field, types);
+            sections(field, page);
         }
     }
 
@@ -327,7 +319,7 @@ This page is made from the types by a test, which fails where the two differ.
         let _ = write!(
             page,
             "\n## ComicStyle\n\n{docs}\n\n| entry | type | meaning |\n|---|---|---|\n\
-             | `version` | u32 | Version of the file format: 2. |\n\
+             | `version` | u32 | Version of the file format: 3. |\n\
              | `name` | String | Title for people. |\n\
              | `partial` | bool | Whether effects that the file does not mention stay as the camera has \
              them. Default: `false`. |\n\
@@ -348,20 +340,9 @@ This page is made from the types by a test, which fails where the two differ.
         let mut page = HEAD.to_owned();
         let effects = EffectRegistry::built_in().types();
         style(&mut page, &effects);
-        let mut types = Types::new();
-        add_types(DepthMap::type_info(), &mut types);
-        for effect in &effects {
-            add_types((effect.type_info)(), &mut types);
-        }
-        for name in FIRST.split_whitespace() {
-            section_of(types[name], &mut page);
-        }
+        sections(DepthMap::type_info(), &mut page);
         for effect in effects {
-            let info = (effect.type_info)();
-            let name = info.type_path_table().short_path();
-            if !page.contains(&format!("\n## {name}\n")) {
-                section_of(info, &mut page);
-            }
+            sections((effect.type_info)(), &mut page);
         }
         page
     }

@@ -39,9 +39,10 @@ fn main() {
 "#;
 
 /// The crates that the printed programs and their checks name.
-const CRATES: [&str; 5] = [
+const CRATES: [&str; 6] = [
     "bevy",
     "bevy_comics",
+    "bevy_comics_inspector",
     "bevy_comics_testkit",
     "image",
     "serde",

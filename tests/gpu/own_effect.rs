@@ -1,12 +1,18 @@
 //! The code of `docs/your-own-effect.md` compiles in a crate outside the repository and works there
 //! as the page says.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use crate::{
     guide::blocks,
     outside::{self, File, ROOT},
+    prelude::*,
 };
+use line_effect::Emphasis;
+
+#[expect(dead_code, reason = "of the example, its effect is tested")]
+#[path = "../../examples/line_effect.rs"]
+mod line_effect;
 
 /// Runs the page's effect without a window and calls the page's functions.
 const HEADLESS: &str = r##"
@@ -135,4 +141,39 @@ fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
     for part in ["#ifdef TINT\n", "#ifdef VIEW_TINT\n", "my_game::tint"] {
         assert!(shader.contains(part), "{part:?} is not in\n{shader}");
     }
+}
+
+/// The example's effect leaves the lines at its distance as they are, and takes ink from all others.
+#[test]
+fn an_effect_of_a_game_thins_lines() {
+    let size = UVec2::new(96, 64);
+    let plugin = EffectPlugin::<Emphasis>::default();
+    let mut small = Small::with_plugins(options(size), Msaa::Off, plugin);
+    small.clear();
+    small.world().insert_resource(ClearColor(Color::WHITE));
+    small.insert((Transform::IDENTITY, Projection::default()));
+    for (side, z) in [(-1.0, 4.0), (1.0, 20.0)] {
+        let at = Transform::from_xyz(0.3 * side * z, 0.0, -z).with_scale(Vec3::splat(0.3 * z));
+        small.put(Rectangle::new(1.0, 1.0), unlit(Color::WHITE), at);
+    }
+    // Of the left and of the right half.
+    let ink = |small: &mut Small, style: ComicStyle| {
+        small.style(&style);
+        let picture = small.settle().picture();
+        [0..size.x / 2, size.x / 2..size.x].map(|columns| {
+            let pixels = columns.flat_map(|x| (0..size.y).map(move |y| (x, y)));
+            black_ink(&picture, pixels)
+        })
+    };
+    let lines = ComicStyle::new().with(Outlines::default());
+    let whole = ink(&mut small, lines.clone());
+    let near = lines.with(Emphasis {
+        amount: 0.9,
+        distance: 4.0,
+    });
+    let left = ink(&mut small, near);
+    assert!(whole[1] > 20.0, "{whole:?}");
+    assert_eq!(left[0], whole[0]);
+    assert!(left[1] < 0.2 * whole[1], "{left:?} of {whole:?}");
+    assert_eq!(small.errors(), 0);
 }

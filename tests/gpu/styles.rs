@@ -52,8 +52,10 @@ fn set_inside_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     match value.reflect_mut() {
         ReflectMut::Struct(all) => {
             for i in 0..all.field_len() {
-                if random.unit() < 0.5 {
-                    set_at_random(all.field_at_mut(i).expect("a field"), random);
+                let field = all.field_at_mut(i).expect("a field");
+                // Files have colours in sRGB, and some defaults are not.
+                if random.unit() < 0.5 || field.try_downcast_ref::<Color>().is_some() {
+                    set_at_random(field, random);
                 }
             }
         }

@@ -50,14 +50,14 @@ const FILES: [&str; 12] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
-    CELLS,
+    READ_PLANES,
+    "bevy_comics/lines/cracks/stored.wgsl",
     COLUMNS,
     DRAW,
-    LINK,
     READ,
-    READ_PLANES,
+    CELLS,
+    LINK,
     SETTLE,
-    "bevy_comics/lines/cracks/stored.wgsl",
     "bevy_comics/objects/objects.wgsl",
 ];
 
