@@ -150,7 +150,6 @@ fn an_effect_of_a_game_thins_lines() {
     let plugin = EffectPlugin::<Emphasis>::default();
     let mut small = Small::with_plugins(options(size), Msaa::Off, plugin);
     small.clear();
-    small.world().insert_resource(ClearColor(Color::WHITE));
     small.insert((Transform::IDENTITY, Projection::default()));
     for (side, z) in [(-1.0, 4.0), (1.0, 20.0)] {
         let at = Transform::from_xyz(0.3 * side * z, 0.0, -z).with_scale(Vec3::splat(0.3 * z));
@@ -165,13 +164,18 @@ fn an_effect_of_a_game_thins_lines() {
             black_ink(&picture, pixels)
         })
     };
+    let none = ink(&mut small, ComicStyle::new());
+    let mut ink = |style| {
+        let found = ink(&mut small, style);
+        [found[0] - none[0], found[1] - none[1]]
+    };
     let lines = ComicStyle::new().with(Outlines::default());
-    let whole = ink(&mut small, lines.clone());
+    let whole = ink(lines.clone());
     let near = lines.with(Emphasis {
         amount: 0.9,
         distance: 4.0,
     });
-    let left = ink(&mut small, near);
+    let left = ink(near);
     assert!(whole[1] > 20.0, "{whole:?}");
     assert_eq!(left[0], whole[0]);
     assert!(left[1] < 0.2 * whole[1], "{left:?} of {whole:?}");

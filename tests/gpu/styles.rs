@@ -47,15 +47,33 @@ fn set_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     }
 }
 
+/// Files have colours in sRGB, and some defaults are not.
+fn into_srgb(value: &mut dyn PartialReflect) {
+    if let Some(color) = value.try_downcast_mut::<Color>() {
+        *color = Color::Srgba(color.to_srgba());
+        return;
+    }
+    match value.reflect_mut() {
+        ReflectMut::Struct(all) => {
+            (0..all.field_len()).for_each(|i| into_srgb(all.field_at_mut(i).expect("a field")));
+        }
+        ReflectMut::Enum(kind) => {
+            (0..kind.field_len()).for_each(|i| into_srgb(kind.field_at_mut(i).expect("a field")));
+        }
+        _ => {}
+    }
+}
+
 fn set_inside_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     let info = value.get_represented_type_info();
     match value.reflect_mut() {
         ReflectMut::Struct(all) => {
             for i in 0..all.field_len() {
                 let field = all.field_at_mut(i).expect("a field");
-                // Files have colours in sRGB, and some defaults are not.
-                if random.unit() < 0.5 || field.try_downcast_ref::<Color>().is_some() {
+                if random.unit() < 0.5 {
                     set_at_random(field, random);
+                } else {
+                    into_srgb(field);
                 }
             }
         }
