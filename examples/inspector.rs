@@ -197,8 +197,8 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
     }
 }
 
-/// Keeps cameras within the width that `--viewport` names. Two cameras share it: the first draws to its
-/// left half, the second to its right half.
+/// Keeps cameras within the width that `--viewport` names. Two cameras share it: the first draws to
+/// its left half, the second to its right half.
 fn lay_out(
     options: Res<Options>,
     window: Single<&Window>,

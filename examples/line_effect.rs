@@ -1,5 +1,5 @@
-//! Emphasis: an effect that changes lines. What is at one distance keeps its lines, all others become
-//! thinner and fainter. The arrow keys move the distance. Guide: docs/your-own-effect.md.
+//! Emphasis: an effect that changes lines. What is at one distance keeps its lines, all others
+//! become thinner and fainter. The arrow keys move the distance. Guide: docs/your-own-effect.md.
 
 use bevy::prelude::*;
 use bevy_comics::{

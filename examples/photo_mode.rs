@@ -136,8 +136,8 @@ fn fly(
     }
 }
 
-/// Sends the camera's picture to a larger image. Lines grow with the scale factor, so that the photo
-/// looks as the window does.
+/// Sends the camera's picture to a larger image. Lines grow with the scale factor, so that the
+/// photo looks as the window does.
 fn begin(world: &mut World) {
     if world.contains_resource::<Photo>() {
         return;

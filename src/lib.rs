@@ -32,8 +32,8 @@
 //! 2. A compute shader finds the nearest and the farthest visible depth in the depth prepass.
 //! 3. Depth is mapped to `D`, which is 0 at the near end of that range and 1 at its far end
 //!    ([`DepthMap`]).
-//! 4. If the camera has [`Outlines`], silhouettes, creases and edges between objects are found along
-//!    the borders between pixels, linked to lines and drawn.
+//! 4. If the camera has [`Outlines`], silhouettes, creases and edges between objects are found
+//!    along the borders between pixels, linked to lines and drawn.
 //! 5. One full-screen pass after tonemapping applies the effects, stage by stage
 //!    ([`EffectStage`](effect::EffectStage)).
 //!
@@ -55,8 +55,8 @@
 //! The crate `bevy_comics_inspector` is a panel that edits styles while the game runs.
 //!
 //! Equations are those of *Comics stylizations of 3D scenes using GPU* (Suarez, Belhadj, Boyer),
-//! cited as \[CS\], and of *Cartoon-Looking Rendering of 3D-Scenes* (Wang, after Decaudin), cited as
-//! \[CL\]. Every setting is clamped to its documented range before it is used; no value causes a
+//! cited as \[CS\], and of *Cartoon-Looking Rendering of 3D-Scenes* (Wang, after Decaudin), cited
+//! as \[CL\]. Every setting is clamped to its documented range before it is used; no value causes a
 //! panic or a NaN.
 #![warn(missing_docs)]
 

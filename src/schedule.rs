@@ -21,8 +21,8 @@ pub enum ComicsSystems {
     /// Applies the effects to the picture: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
-    /// The same for cameras with an effect that [prints](crate::Effect::runs_after_anti_aliasing): after FXAA,
-    /// SMAA and contrast-adaptive sharpening, which would change dots and grain.
+    /// The same for cameras with an effect that [prints](crate::Effect::runs_after_anti_aliasing):
+    /// after FXAA, SMAA and contrast-adaptive sharpening, which would change dots and grain.
     Print,
 }
 

@@ -27,7 +27,8 @@ pub struct Level {
     pub caption: &'static str,
     pub scene: BuiltIn,
     pub preset: Preset,
-    /// Colour of what is in shadow, as a factor of the sun's light; `None` where lamps light the place.
+    /// Colour of what is in shadow, as a factor of the sun's light; `None` where lamps light the
+    /// place.
     shade: Option<(f32, f32, f32)>,
     /// Points of a closed line, in the order of flight. Heights are above the ground.
     line: &'static [(f32, f32, f32)],
@@ -168,8 +169,8 @@ impl Level {
             flats.value = flats.value.map(|value| 0.45 * value);
         }
         if let Some(outlines) = style.get_mut::<Outlines>() {
-            // The step of a road to the grass is a silhouette nearby and an edge between objects far away:
-            // one width for both.
+            // The step of a road to the grass is a silhouette nearby and an edge between objects
+            // far away: one width for both.
             outlines.weight.object = outlines.weight.outer;
             return style;
         }

@@ -18,8 +18,8 @@ use crate::{
 pub struct Orders {
     pub level: usize,
     pub picture: Option<PathBuf>,
-    /// Number of lanterns that are found before it is drawn; by default half of them on a picture, and
-    /// all but two else.
+    /// Number of lanterns that are found before it is drawn; by default half of them on a picture,
+    /// and all but two else.
     pub lanterns: Option<usize>,
     pub size: UVec2,
 }

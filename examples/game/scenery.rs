@@ -39,7 +39,8 @@ type OfScene = (
     Without<Plane>,
 );
 
-/// The meshes of a scene that are solid. Rain and reflections, which are mixed over the picture, are not.
+/// The meshes of a scene that are solid. Rain and reflections, which are mixed over the picture,
+/// are not.
 pub fn solid<'a>(
     parts: impl Iterator<
         Item = (
@@ -57,9 +58,9 @@ pub fn solid<'a>(
     })
 }
 
-/// Makes a new scene solid and flat. Tiles of the ground become one object, without lines between them.
-/// Window frames and plinths stand out by less than a pixel from far away: as sections their lines
-/// do not break into dashes.
+/// Makes a new scene solid and flat. Tiles of the ground become one object, without lines between
+/// them. Window frames and plinths stand out by less than a pixel from far away: as sections their
+/// lines do not break into dashes.
 pub fn finish(
     mut commands: Commands,
     mut game: ResMut<Game>,

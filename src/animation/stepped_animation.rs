@@ -40,11 +40,10 @@ use crate::{
 /// animation are not touched: the game reads and writes the true transforms. Motion vectors
 /// are those of the picture: none while a pose is held.
 ///
-/// Cameras and lights below the entity are never held. A `SteppedAnimation` below another one has its
-/// own rate. Not held: morph targets, materials, and what other crates draw without meshes.
-/// Meshes are culled, and the cascades of shadows fitted, by the true pose: an object that
-/// enters the view fast can appear up to a drawing late. Needs the feature `objects` or
-/// `toon`.
+/// Cameras and lights below the entity are never held. A `SteppedAnimation` below another one has
+/// its own rate. Not held: morph targets, materials, and what other crates draw without meshes.
+/// Meshes are culled, and the cascades of shadows fitted, by the true pose: an object that enters
+/// the view fast can appear up to a drawing late. Needs the feature `objects` or `toon`.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct SteppedAnimation {

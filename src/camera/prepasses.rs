@@ -52,8 +52,9 @@ fn is_given<P: Component>(camera: EntityRef) -> bool {
     camera.contains::<P>() && !camera.contains::<OwnPrepass<P>>()
 }
 
-/// Cameras that can have no prepass of this crate. The engine has one prepass for all cameras of a target,
-/// with the samples of one of them, and its renderer fails where another one has other samples.
+/// Cameras that can have no prepass of this crate. The engine has one prepass for all cameras of a
+/// target, with the samples of one of them, and its renderer fails where another one has other
+/// samples.
 fn refused(
     cameras: &Query<EntityRef, With<Camera3d>>,
     primary_window: Option<Entity>,
@@ -85,7 +86,8 @@ fn refused(
     refused
 }
 
-/// Whether the prepasses of a camera cannot be read: wgpu 29 binds no multisampled textures with OpenGL.
+/// Whether the prepasses of a camera cannot be read: wgpu 29 binds no multisampled textures with
+/// OpenGL.
 fn is_unreadable(camera: EntityRef) -> bool {
     let plan = camera.get::<CameraPlan>();
     let lacks = plan.is_some_and(|own| own.plan.lacks.depth_copies && own.plan.needs_depth());

@@ -47,7 +47,8 @@ impl RangeShape {
         if device.limits().max_compute_workgroup_size_x == 0 {
             return None;
         }
-        // Shaders of browsers are written as text by naga 29, which leaves out that they use subgroups.
+        // Shaders of browsers are written as text by naga 29, which leaves out that they use
+        // subgroups.
         let subgroups =
             cfg!(not(target_family = "wasm")) && device.features().contains(WgpuFeatures::SUBGROUP);
         let for_gpus = if subgroups {

@@ -60,10 +60,10 @@ pub struct RangeSmoothing {
     /// for one frame changes nothing. Delays the range by one frame.
     /// Default: `true`.
     pub despike: bool,
-    /// Change of distance, in octaves, that an end of the range ignores for some
-    /// seconds. An end that has begun to move follows the scene until it is within a
-    /// quarter of this, then comes to rest. Under an orthographic projection the unit is the length of the
-    /// range. Range 0 to 4, default 0.07 (5 % of a distance).
+    /// Change of distance, in octaves, that an end of the range ignores for some seconds. An end
+    /// that has begun to move follows the scene until it is within a quarter of this, then comes to
+    /// rest. Under an orthographic projection the unit is the length of the range. Range 0 to 4,
+    /// default 0.07 (5 % of a distance).
     #[reflect(@FieldRange::linear(0.0, 4.0).unit("oct"))]
     pub hysteresis: f32,
     /// Time constant with which the range grows, in seconds of real time: 63 % of a

@@ -48,14 +48,14 @@ pub(crate) struct OwnNormals {
     pub copy: CachedRenderPipelineId,
 }
 
-/// Whether the engine's depth prepass is empty: wgpu 29 does not copy depth textures with OpenGL, and no
-/// shader there can load from the depth textures that the engine binds for materials.
+/// Whether the engine's depth prepass is empty: wgpu 29 does not copy depth textures with OpenGL,
+/// and no shader there can load from the depth textures that the engine binds for materials.
 pub(crate) fn prepass_is_empty(adapter: &RenderAdapterInfo) -> bool {
     adapter.backend == Backend::Gl
 }
 
-/// With OpenGL, effects read the depth that the engine draws with. It holds the same, and opaque meshes
-/// that are not in the prepass.
+/// With OpenGL, effects read the depth that the engine draws with. It holds the same, and opaque
+/// meshes that are not in the prepass.
 pub(super) fn use_drawn_depth(
     mut commands: Commands,
     adapter: Res<RenderAdapterInfo>,

@@ -92,8 +92,8 @@ pub trait Effect:
     /// display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
-    /// Whether the module has a function `NAME_half_box` for [`Needs::BOX_STATISTICS`]: it takes the
-    /// settings and a pixel, of which only the places and the depth are set, and returns half
+    /// Whether the module has a function `NAME_half_box` for [`Needs::BOX_STATISTICS`]: it takes
+    /// the settings and a pixel, of which only the places and the depth are set, and returns half
     /// the side of the box around it in physical pixels. Default: false.
     const HALF_BOX: bool = false;
 
@@ -106,10 +106,10 @@ pub trait Effect:
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used. Values in range must be returned unchanged. Default: every `f32`, `u32`,
-    /// `Vec2`, `Vec3` and `Option<f32>` with a [`FieldRange`] is clamped to it (if it is not finite, it
-    /// becomes its default), and every `Color` to what a display shows. Other types, fields without a
-    /// range, fields of enums and structs in options are not changed.
+    /// The settings that are used. Values in range must be returned unchanged. Default: every
+    /// `f32`, `u32`, `Vec2`, `Vec3` and `Option<f32>` with a [`FieldRange`] is clamped to it (if it
+    /// is not finite, it becomes its default), and every `Color` to what a display shows. Other
+    /// types, fields without a range, fields of enums and structs in options are not changed.
     #[must_use]
     fn sanitized(self) -> Self {
         clamp_fields(self)
@@ -135,8 +135,8 @@ pub trait Effect:
         (!self.needs().intersects(missing)).then_some(self)
     }
 
-    /// The lines that this effect requests; every number must be in its range. If several effects of
-    /// a camera request lines, the request of the first one in the chain is used. Default: none.
+    /// The lines that this effect requests; every number must be in its range. If several effects
+    /// of a camera request lines, the request of the first one in the chain is used. Default: none.
     fn lines(&self) -> Option<Outlines> {
         None
     }
@@ -153,8 +153,9 @@ pub trait Effect:
         let _ = (view, variants);
     }
 
-    /// For [`Needs::BOX_STATISTICS`]: how many pixels the boxes reach from their middle at most. Up to 6 are
-    /// compiled in, which is faster where most boxes reach as far. Default: boxes of any size.
+    /// For [`Needs::BOX_STATISTICS`]: how many pixels the boxes reach from their middle at most. Up
+    /// to 6 are compiled in, which is faster where most boxes reach as far. Default: boxes of any
+    /// size.
     fn max_radius(&self, view: &EffectContext) -> Option<u32> {
         let _ = view;
         None
@@ -176,8 +177,8 @@ pub trait Effect:
         None
     }
 
-    /// What the effect changes about the lines of its camera. If several effects of a camera change the
-    /// same, the first one in the chain counts. Default: nothing.
+    /// What the effect changes about the lines of its camera. If several effects of a camera change
+    /// the same, the first one in the chain counts. Default: nothing.
     fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
         let _ = view;
         LineModifiers::default()

@@ -39,12 +39,13 @@ bitflags! {
         /// `bevy_comics::effect::blue_noise::blue_noise`.
         const BLUE_NOISE = 1 << 8;
         /// Means and variances of that picture over boxes of any size around every pixel, by
-        /// `bevy_comics::effect::box_statistics::load_means`. Includes [`Needs::PICTURE`]. Two passes
-        /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
+        /// `bevy_comics::effect::box_statistics::load_means`. Includes [`Needs::PICTURE`]. Two
+        /// passes draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
         /// says how large the boxes are, see [`Effect::HALF_BOX`](super::Effect::HALF_BOX).
         const BOX_STATISTICS = 1 << 9;
         /// Where the object at a pixel is, by `load_object` and `style_of` of
-        /// `bevy_comics::objects`, if it has a [`PatternAnchor`](crate::objects::PatternAnchor). Includes
+        /// `bevy_comics::objects`, if it has a [`PatternAnchor`](crate::objects::PatternAnchor).
+        /// Includes
         /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
         /// `OBJECT_ANCHORS` is not defined in WGSL.
         const OBJECT_ANCHORS = 1 << 10;

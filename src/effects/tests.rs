@@ -29,8 +29,8 @@ fn assert_packed(effect: &dyn AnyEffect, view: &EffectContext) {
     }
 }
 
-/// Whatever the numbers of an effect are, those that are used are in their ranges, and those that are packed
-/// for the GPU are finite.
+/// Whatever the numbers of an effect are, those that are used are in their ranges, and those that
+/// are packed for the GPU are finite.
 #[test]
 fn any_number_of_an_effect_is_clamped() {
     let (effects, view) = (effects(), EffectContext::default());

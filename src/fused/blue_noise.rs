@@ -52,8 +52,8 @@ impl BlueNoise {
 /// Where the part of the tile of each plate begins, in plates.
 const PLATE: [usize; 2] = [19, 37];
 
-/// All that a pixel shows of four plates, for every place: of each plate the classes of the grain at
-/// the place, and of those to its right, below it, and to the right below it.
+/// All that a pixel shows of four plates, for every place: of each plate the classes of the grain
+/// at the place, and of those to its right, below it, and to the right below it.
 fn around(classes: &[u8]) -> Vec<u8> {
     let of = |x: usize, y: usize| classes[y % SIDE * SIDE + x % SIDE];
     let texel = |i: usize| {

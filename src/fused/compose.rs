@@ -49,10 +49,10 @@ fn fused_pass(types: &[&EffectType]) -> String {
     text
 }
 
-/// The member of `Comics` that holds an effect's settings. Its type has the full
-/// module path, so that two effects may use the same struct name. The suffix
-/// `_settings` keeps the member's name different from every name that the template
-/// imports: the composer would replace equal names. The vector before it puts it at a multiple of 16 bytes.
+/// The member of `Comics` that holds an effect's settings. Its type has the full module path, so
+/// that two effects may use the same struct name. The suffix `_settings` keeps the member's name
+/// different from every name that the template imports: the composer would replace equal names. The
+/// vector before it puts it at a multiple of 16 bytes.
 fn members(effect: &EffectType) -> String {
     let Some(settings) = effect.shader.settings else {
         return String::new();

@@ -12,10 +12,10 @@ use crate::settings::{FieldRange, clamp_fields};
 /// Draws lines behind a mesh while it moves fast: each is the path that a point of its surface
 /// took, so those of what turns are curved (Lake et al. 2000).
 ///
-/// Put it on an entity with a mesh. Points are chosen on its surface once, evenly by area; those at the
-/// back of the movement draw a line. Lines begin a little behind the surface, taper to both ends,
-/// and have the same width at every distance. They fade in with the speed, and are gone when the
-/// thing stands still.
+/// Put it on an entity with a mesh. Points are chosen on its surface once, evenly by area; those at
+/// the back of the movement draw a line. Lines begin a little behind the surface, taper to both
+/// ends, and have the same width at every distance. They fade in with the speed, and are gone when
+/// the thing stands still.
 ///
 /// They follow the app's default clock, whatever the frame rate is, and stay while the game is
 /// paused. Paths begin anew at a jump, which is a step of more than five times the usual speed,
@@ -38,8 +38,8 @@ use crate::settings::{FieldRange, clamp_fields};
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Trail)]
 pub struct MotionLines {
-    /// Number of points on the surface. Those at the back of the movement draw a line: about a third
-    /// of them on what is round. Range 1 to 128, default 48.
+    /// Number of points on the surface. Those at the back of the movement draw a line: about a
+    /// third of them on what is round. Range 1 to 128, default 48.
     #[reflect(@FieldRange::linear(1.0, 128.0))]
     pub points: u32,
     /// Time of the movement that the longest line shows, in seconds. Range 0.02 to 2, default
@@ -64,8 +64,9 @@ pub struct MotionLines {
     /// Colour of the ink before tonemapping; its alpha is the opacity. Components are clamped to
     /// what a display shows. Default: black.
     pub color: Color,
-    /// Drawings per second: lines change with the drawings of a [`SteppedAnimation`](crate::SteppedAnimation) of
-    /// the same rate. 0: in every frame. Range 0 to 60, default 0.
+    /// Drawings per second: lines change with the drawings of a
+    /// [`SteppedAnimation`](crate::SteppedAnimation) of the same rate. 0: in every frame. Range 0
+    /// to 60, default 0.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
     /// Chooses other points. Range 0 to 65535, default 0.

@@ -19,9 +19,9 @@ use super::{inherit::inherit, table::ObjectStyleUniform};
 /// [`ScreenAnchor::Object`](crate::effects::ScreenAnchor::Object) follow this object: the dots move, turn
 /// and grow with it, as if they were printed on the figure.
 ///
-/// Dots turn with the object's roll about the view's axis: the direction in which its Y axis
-/// points on the page, or its -Z axis where Y points within 6 degrees of the camera. They grow with
-/// its apparent size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then
+/// Dots turn with the object's roll about the view's axis: the direction in which its Y axis points
+/// on the page, or its -Z axis where Y points within 6 degrees of the camera. They grow with its
+/// apparent size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then
 /// dots of half the size take over, faded in and out. While the centre is behind the camera, its
 /// dots lie on the page.
 ///

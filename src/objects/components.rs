@@ -48,10 +48,11 @@ impl Default for NoOutlines {
 
 /// Takes this object out of the colour effects: its colours stay as they were rendered.
 ///
-/// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) leave it alone:
-/// tone bands, desaturation, colorization, screens, and those of a game. Lines and the effects of the whole
-/// page still apply; [`NoOutlines`] removes its lines. At its rim, multisampled pixels mix
-/// both colours. For what has to keep its colour: a cursor, a team's flag, a light.
+/// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) leave it
+/// alone: tone bands, desaturation, colorization, screens, and those of a game. Lines and the
+/// effects of the whole page still apply; [`NoOutlines`] removes its lines. At its rim,
+/// multisampled pixels mix both colours. For what has to keep its colour: a cursor, a team's flag,
+/// a light.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoStyle {

@@ -9,9 +9,9 @@ use bevy::{
 use super::{FieldRange, clamp_color, clamp_or_default, clamp_vec2_or_default};
 
 /// The value with every `f32`, `u32`, `Vec2`, `Vec3` and `Option<f32>` in the [`FieldRange`] of its
-/// field, if it has one. A number that is not finite becomes that of the type's default. Colours are
-/// clamped to what a display shows. Nested structs are clamped with the default of the outer type;
-/// other types, structs in options and fields of enums are not changed.
+/// field, if it has one. A number that is not finite becomes that of the type's default. Colours
+/// are clamped to what a display shows. Nested structs are clamped with the default of the outer
+/// type; other types, structs in options and fields of enums are not changed.
 pub fn clamp_fields<T: Struct + Typed + Default>(mut value: T) -> T {
     clamp_struct(&mut value, &T::default());
     value

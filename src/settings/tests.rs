@@ -27,8 +27,8 @@ use crate::{
     },
 };
 
-/// Floats: hand-picked edge cases, then as many random bit patterns as there are cases, which include
-/// NaN and infinities.
+/// Floats: hand-picked edge cases, then as many random bit patterns as there are cases, which
+/// include NaN and infinities.
 fn floats() -> impl Iterator<Item = f32> {
     let edges = [
         0.0,
@@ -60,8 +60,8 @@ fn floats() -> impl Iterator<Item = f32> {
     edges.into_iter().chain(random.take(non_finite::cases()))
 }
 
-/// Asserts for many values of a field, among them the ends of its range and those beside them, that the
-/// clamped value is inside the range, and equal to the value if that was inside.
+/// Asserts for many values of a field, among them the ends of its range and those beside them, that
+/// the clamped value is inside the range, and equal to the value if that was inside.
 fn fuzz(field: &str, low: f32, high: f32, through: impl Fn(f32) -> f32) {
     let mut kept = 0;
     let ends = [low, high].into_iter();

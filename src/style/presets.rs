@@ -157,7 +157,8 @@ presets! {
         SUMI_E: "sumi-e";
         /// Washes of the scene's own colours on rough paper, under loose ink.
         WATERCOLOR: "watercolor";
-        /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
+        /// Flat patches of opaque colour on rough paper, soft lines in the colours that they
+        /// surround.
         GOUACHE: "gouache";
         /// Dabs of thick paint along the forms, golden lights and violet shadows, no lines.
         OIL_SKETCH: "oil-sketch";
@@ -222,8 +223,8 @@ pub(super) fn embed(app: &mut App) {
 mod tests {
     use super::*;
 
-    /// The first line of a style's file says what it is and what it was made for; its lines are those of
-    /// the second paper or of later effects.
+    /// The first line of a style's file says what it is and what it was made for; its lines are
+    /// those of the second paper or of later effects.
     #[test]
     fn looks_say_their_intent_and_do_not_lean_on_contours() {
         assert_eq!(STYLES.len(), 36);

@@ -9,8 +9,8 @@ use crate::settings::clamp_or_default;
 /// [`ToonLight::art_map`](super::ToonLight::art_map) (Praun et al. 2001).
 ///
 /// Each texel holds the tone from which it is ink (Webb et al. 2002), in one channel. Strokes of a
-/// light tone are part of all darker ones, and those of a coarse mip level part of all finer ones. At
-/// every level the fraction of texels that are ink is the tone, and strokes are equally wide in
+/// light tone are part of all darker ones, and those of a coarse mip level part of all finer ones.
+/// At every level the fraction of texels that are ink is the tone, and strokes are equally wide in
 /// texels. The image repeats without seams. Equal settings give equal images.
 ///
 /// In WebGL 2, the levels of an image cannot be counted: other images need mip levels down to 16
@@ -31,8 +31,8 @@ use crate::settings::clamp_or_default;
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TonalArtMap {
-    /// Width and height in texels: the next power of two. Range 16 to 1024, default 256. The time to
-    /// draw a map grows with the number of texels.
+    /// Width and height in texels: the next power of two. Range 16 to 1024, default 256. The time
+    /// to draw a map grows with the number of texels.
     pub size: u32,
     /// Length of the longest strokes, as a fraction of the map; the shortest ones have 0.4 of it.
     /// Range 0.05 to 1, default 0.5.
@@ -42,7 +42,8 @@ pub struct TonalArtMap {
     /// How far strokes are from parallel, in degrees to both sides; they also bend as much. Range 0
     /// to 45, default 4.
     pub spread: f32,
-    /// Tone from which half of the strokes cross the others. Range 0 to 1, default 0.45; at 1 none do.
+    /// Tone from which half of the strokes cross the others. Range 0 to 1, default 0.45; at 1 none
+    /// do.
     pub crossing: f32,
     /// Other seeds give other strokes. Default: 0.
     pub seed: u32,
@@ -62,8 +63,8 @@ impl Default for TonalArtMap {
 }
 
 impl TonalArtMap {
-    /// The settings that are used: every number is clamped to its documented range, and a number that
-    /// is not finite is replaced by its default.
+    /// The settings that are used: every number is clamped to its documented range, and a number
+    /// that is not finite is replaced by its default.
     #[must_use]
     pub fn sanitized(self) -> Self {
         let default = Self::default();

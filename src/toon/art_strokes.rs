@@ -241,8 +241,8 @@ mod tests {
         }
     }
 
-    /// A texel of a stroke of a coarse level has ink in the next finer one, at about the same tone: a
-    /// level is darker than its step by less than a stroke.
+    /// A texel of a stroke of a coarse level has ink in the next finer one, at about the same tone:
+    /// a level is darker than its step by less than a stroke.
     #[test]
     fn coarse_strokes_are_part_of_finer_levels() {
         let map = map(3);

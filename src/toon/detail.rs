@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::RampStop;
 use crate::settings::{FieldRange, clamp_or_default};
 
-/// A second ramp of a [`Ramp`](crate::toon::Ramp), and how much of each there is: the ramp itself where
-/// there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian 2006).
+/// A second ramp of a [`Ramp`](crate::toon::Ramp), and how much of each there is: the ramp itself
+/// where there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian
+/// 2006).
 ///
 /// Between the two, stops move, soften and change their colours, which are mixed in `OKLab`. The
 /// first stop becomes the first one, and so on. The shorter ramp's last tone takes the place of
@@ -19,8 +20,8 @@ use crate::settings::{FieldRange, clamp_or_default};
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RampDetail {
-    /// The tones where there is no detail, as [`Ramp::stops`](crate::toon::Ramp::stops). Default: one
-    /// tone, white.
+    /// The tones where there is no detail, as [`Ramp::stops`](crate::toon::Ramp::stops). Default:
+    /// one tone, white.
     #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub plain: Vec<RampStop>,
     /// Where there is detail. Default: [`DetailAxis::Depth`].
@@ -64,8 +65,8 @@ pub enum DetailAxis {
         power: f32,
     },
     /// Where surfaces reflect the light: `max(r.v, 0)^power`, with the reflected light `r`. The
-    /// second ramp is that outside of highlights. In [`RampMode::LightFraction`](crate::toon::RampMode::LightFraction),
-    /// the mean of all lights.
+    /// second ramp is that outside of highlights. In
+    /// [`RampMode::LightFraction`](crate::toon::RampMode::LightFraction), the mean of all lights.
     Highlight {
         /// Range 1 to 200, default 20. The larger, the smaller is the highlight.
         #[reflect(@FieldRange::logarithmic(1.0, 200.0))]
@@ -80,12 +81,12 @@ pub enum DetailAxis {
     /// Near the eye, between the nearest and the farthest thing that the camera sees:
     /// `1 - ln(z / nearest) / ln(farthest / nearest)`.
     ///
-    /// The range is that of the depth map, smoothed as [`DepthMap::smoothing`] says; where it is smaller
-    /// than [`DepthMap::floor`], that is the range. It is found for
-    /// cameras that have any component of this crate which reads depth or draws, such as an effect or
+    /// The range is that of the depth map, smoothed as [`DepthMap::smoothing`] says; where it is
+    /// smaller than [`DepthMap::floor`], that is the range. It is found for cameras that have any
+    /// component of this crate which reads depth or draws, such as an effect or
     /// [`VisibleDepthRange`], up to 64 of them. In other views, such as those of a camera without
-    /// effects, and where nothing is seen in the depth prepass, there is all detail. Cameras with the
-    /// same viewport, place, axis and field of view on several targets have one range.
+    /// effects, and where nothing is seen in the depth prepass, there is all detail. Cameras with
+    /// the same viewport, place, axis and field of view on several targets have one range.
     ///
     /// [`DepthMap::smoothing`]: crate::DepthMap::smoothing
     /// [`DepthMap::floor`]: crate::DepthMap::floor

@@ -75,8 +75,8 @@ fn everything(numbers: &mut Numbers) -> ToonLight {
     }
 }
 
-/// Whatever the numbers of a material are, those that are used are in their ranges, and those that are packed
-/// for the GPU are finite and the same.
+/// Whatever the numbers of a material are, those that are used are in their ranges, and those that
+/// are packed for the GPU are finite and the same.
 #[test]
 fn any_number_of_a_material_is_clamped() {
     let mut numbers = Numbers::new(2);

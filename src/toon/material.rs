@@ -52,11 +52,12 @@ use crate::{
 /// lower. On meshes with a lightmap, lights that do not affect lightmapped meshes only draw
 /// highlights.
 ///
-/// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit`
-/// work as in the standard material. Metals are drawn as paint of their base colour, with highlights
-/// of that colour. Reflections of environment maps and of the screen,
-/// transmission, clearcoat and anisotropy are not drawn; a warning names the first material
-/// that asks for one of the last three, and the first camera with `ScreenSpaceReflections`. The light is computed in the forward pass:
+/// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit` work as in
+/// the standard material. Metals are drawn as paint of their base colour, with highlights of that
+/// colour. Reflections of environment maps and of the screen, transmission, clearcoat and
+/// anisotropy are not drawn; a warning names the first material that asks for one of the last
+/// three, and the first camera with `ScreenSpaceReflections`. The light is computed in the forward
+/// pass:
 /// [`opaque_render_method`] is always set to forward, so that on a camera with a
 /// deferred prepass these meshes are drawn forward.
 ///
@@ -110,8 +111,8 @@ pub struct ToonLight {
     /// things. It is
     /// for opaque materials: alpha is still opacity in others. Default: `false`.
     pub vertex_threshold: bool,
-    /// How easily places are lit, as an image: its red channel means what the alpha of vertices does
-    /// for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
+    /// How easily places are lit, as an image: its red channel means what the alpha of vertices
+    /// does for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
     ///
     /// The image lies on the texture coordinates of the base colour and is read with the sampler of
     /// its texture; meshes without coordinates do not read it. Load it with `is_srgb: false`: in
@@ -123,8 +124,8 @@ pub struct ToonLight {
     pub threshold_map: Option<Handle<Image>>,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
     pub ramp: Option<Ramp>,
-    /// The tones of `ramp`, painted in an image, in place of its stops. Default: none. Files have the
-    /// path of the image among the assets, as in `ramp_map: "ramps/skin.png"`.
+    /// The tones of `ramp`, painted in an image, in place of its stops. Default: none. Files have
+    /// the path of the image among the assets, as in `ramp_map: "ramps/skin.png"`.
     ///
     /// If `ramp` is `None`, its other settings are those of [`Ramp::default`].
     #[texture(105, visibility(fragment), filterable = false)]
@@ -145,7 +146,8 @@ pub struct ToonLight {
     /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
     /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
     /// [`at_near`](Hatching::at_near) is the factor of the darkness at all distances.
-    /// Dots stay on meshes as strokes do. [`at_far`](Hatching::at_far), [`source`](Hatching::source) and [`simplify_small`](Hatching::simplify_small) have no
+    /// Dots stay on meshes as strokes do. [`at_far`](Hatching::at_far),
+    /// [`source`](Hatching::source) and [`simplify_small`](Hatching::simplify_small) have no
     /// meaning here.
     pub hatching: Option<Hatching>,
     /// The strokes of `hatching`, as a tonal art map. Default: `None`, strokes by planes. It is not
@@ -153,8 +155,8 @@ pub struct ToonLight {
     ///
     /// A map lies on the texture coordinates of the mesh, with its strokes along the first one; on
     /// meshes without any, it lies on the three planes of coordinates of the mesh at rest. A stroke
-    /// has its width on the screen, as far as the map has mip levels: that of [`TonalArtMap`] has. Of
-    /// the settings of `hatching`, the map takes the place of `anchor`, and of all that tell how
+    /// has its width on the screen, as far as the map has mip levels: that of [`TonalArtMap`] has.
+    /// Of the settings of `hatching`, the map takes the place of `anchor`, and of all that tell how
     /// strokes are drawn, from `spacing` to `rate` but for `tones`.
     ///
     /// Other images may be used: each texel of the red channel is the tone from which it is ink, in

@@ -37,8 +37,8 @@ pub struct ShadingProxy {
     pub ratio: f32,
 }
 
-/// The shape of a [`ShadingProxy`]. Sizes and places are in the space of the mesh; of skinned meshes,
-/// in that of their entity.
+/// The shape of a [`ShadingProxy`]. Sizes and places are in the space of the mesh; of skinned
+/// meshes, in that of their entity.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,8 +69,8 @@ pub enum ProxyShape {
     ///
     /// The normal of a vertex is the mean of those of the triangles around it, and of those of its
     /// neighbours, again and again; vertices at one place count as one, so that seams and hard
-    /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided into
-    /// triangles, and a ball keeps its normals. Normals follow bones and morph targets.
+    /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided
+    /// into triangles, and a ball keeps its normals. Normals follow bones and morph targets.
     ///
     /// They are made in a task when a mesh first has such a material, and kept in a vertex
     /// attribute of the mesh, of 4 bytes a vertex; until then, and for meshes

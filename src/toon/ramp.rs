@@ -45,9 +45,9 @@ pub struct Ramp {
     pub mode: RampMode,
     /// What the colours of the stops are. Default: [`RampBlend::Multiply`].
     pub blend: RampBlend,
-    /// How much of the strength of the light is kept in [`RampMode::LightFraction`]: the exponent of the
-    /// luminance. 0: all places are equally bright, whatever the lights and the exposure are.
-    /// 1: as bright as they are lit. Range 0 to 1, default 0.5.
+    /// How much of the strength of the light is kept in [`RampMode::LightFraction`]: the exponent
+    /// of the luminance. 0: all places are equally bright, whatever the lights and the exposure
+    /// are. 1: as bright as they are lit. Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub keep_intensity: f32,
     /// A second ramp, and where it is used. Default: `None`.

@@ -12,10 +12,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// X-Toon (Barla, Thollot and Markosian 2006) paint.
 ///
 /// From left to right, more light arrives: each column is a tone, with hard edges between them. A
-/// pixel has the mean of the tones that it covers, exactly, so any number of tones has smooth edges.
-/// The rows are those of the second axis, [`Ramp::detail`](crate::toon::Ramp::detail): the first one, at
-/// the top, is used where there is all detail, the last one where there is none, and tones between
-/// rows are mixed in linear light. Without that axis, only the first row is used.
+/// pixel has the mean of the tones that it covers, exactly, so any number of tones has smooth
+/// edges. The rows are those of the second axis, [`Ramp::detail`](crate::toon::Ramp::detail): the
+/// first one, at the top, is used where there is all detail, the last one where there is none, and
+/// tones between rows are mixed in linear light. Without that axis, only the first row is used.
 ///
 /// The image is 2 to [`LARGEST`](Self::LARGEST) texels wide and 1 to as many high, in a format
 /// without compression; images in sRGB and in linear light both have the colours that they mean.
@@ -129,8 +129,8 @@ impl PartialEq for RampMap {
     }
 }
 
-/// What a material binds. Until the sums are known, it is the image: a material is drawn when its images
-/// have loaded.
+/// What a material binds. Until the sums are known, it is the image: a material is drawn when its
+/// images have loaded.
 impl<'a> From<&'a RampMap> for Option<&'a Handle<Image>> {
     fn from(map: &'a RampMap) -> Self {
         match &map.sums {

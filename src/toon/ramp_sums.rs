@@ -17,8 +17,8 @@ use bevy::{
 use super::{RampMap, ToonMaterial, ramp_map::Sums};
 use crate::settings::clamp_or_default;
 
-/// The sums of an image: texel `k` of a row is the sum of the first `k` texels of that row, in linear
-/// light.
+/// The sums of an image: texel `k` of a row is the sum of the first `k` texels of that row, in
+/// linear light.
 ///
 /// Texels are rounded so that every sum is exact: a flat part of a row has one colour, wherever it
 /// begins. With 1024 texels, they are multiples of 2^-14.

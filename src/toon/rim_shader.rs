@@ -28,13 +28,14 @@ pub(super) fn build_render(app: &mut App) {
         PostUpdate,
         follow_adapter
             .run_if(resource_exists::<RenderAdapterInfo>)
-            // The renderer takes what has changed until then, so that it never has the wrong shader.
+            // The renderer takes what has changed until then, so that it never has the wrong
+            // shader.
             .before(AssetEventSystems),
     );
 }
 
-/// Sets or removes [`NO_DEPTH_LOADS`] when the shader is loaded, or loaded again, and when a device was lost
-/// and the app goes on with another adapter.
+/// Sets or removes [`NO_DEPTH_LOADS`] when the shader is loaded, or loaded again, and when a device
+/// was lost and the app goes on with another adapter.
 ///
 /// What makes pipelines of materials knows no adapter, but each app has a shader of its own.
 fn follow_adapter(

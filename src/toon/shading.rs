@@ -46,9 +46,10 @@ use crate::style::{
 /// ```
 ///
 /// A [`ramp_map`](ToonLight::ramp_map) is the path of its image among the assets, which is loaded
-/// with the shading. A shading whose path leads out of their folder, or to another source of assets than that of
-/// the shading, is not loaded; neither is one whose path has a `\` or a `:`, which mean something else on
-/// other systems. Other images are not part of files: a material keeps its own.
+/// with the shading. A shading whose path leads out of their folder, or to another source of assets
+/// than that of the shading, is not loaded; neither is one whose path has a `\` or a `:`, which
+/// mean something else on other systems. Other images are not part of files: a material keeps its
+/// own.
 ///
 /// [`ToonShadingHandle`] gives one to a mesh, [`ToonScene::shading`](crate::ToonScene::shading) to a
 /// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
@@ -65,8 +66,8 @@ pub struct ToonShading {
 
 /// Gives the material of a mesh the lighting of a [`ToonShading`].
 ///
-/// On an entity with a [`ToonMaterial`](crate::ToonMaterial), the material is changed when
-/// the shading has loaded, and again whenever the shading, the handle or the entity's material changes:
+/// On an entity with a [`ToonMaterial`](crate::ToonMaterial), the material is changed when the
+/// shading has loaded, and again whenever the shading, the handle or the entity's material changes:
 /// so all meshes with this material have the shading. Between those moments the material may be
 /// edited. Removing the component leaves the material as it is.
 ///
@@ -105,7 +106,8 @@ pub enum ToonShadingError {
         /// The version that the file states.
         found: u32,
     },
-    /// The path of an image leads out of the folder of assets, to another source, or to another computer.
+    /// The path of an image leads out of the folder of assets, to another source, or to another
+    /// computer.
     #[error("the image {path} is outside the folder of assets")]
     #[non_exhaustive]
     Path {
@@ -178,7 +180,8 @@ impl ToonShading {
         }
     }
 
-    /// The lighting, with the maps of `other` that the shading has none of: files do not have all of them.
+    /// The lighting, with the maps of `other` that the shading has none of: files do not have all
+    /// of them.
     pub(super) fn with_maps_of(&self, other: &ToonLight) -> ToonLight {
         let light = self.light.clone();
         ToonLight {
@@ -193,8 +196,8 @@ impl ToonShading {
         }
     }
 
-    /// Reads a shading from the text of a `.toon.ron` file. The path of its image is not checked: only what
-    /// the app's assets load is.
+    /// Reads a shading from the text of a `.toon.ron` file. The path of its image is not checked:
+    /// only what the app's assets load is.
     ///
     /// # Errors
     /// [`ToonShadingError::Syntax`] with line and column, or [`ToonShadingError::Version`].
@@ -283,8 +286,8 @@ impl AssetLoader for ToonShadingLoader {
     }
 }
 
-/// Whether a shading may read a path: it stays in the folder of its assets on every system, and is among the
-/// app's usual assets or those that the shading is from, but not on the web.
+/// Whether a shading may read a path: it stays in the folder of its assets on every system, and is
+/// among the app's usual assets or those that the shading is from, but not on the web.
 fn is_local(path: &AssetPath, shading: &AssetPath) -> bool {
     let source = path.source().as_str();
     let is_known = source.is_none() || source == shading.source().as_str();

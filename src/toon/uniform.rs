@@ -144,8 +144,8 @@ impl ToonKey {
         if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
             all.push("ENVIRONMENT".into());
         }
-        // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read four
-        // texels at once.
+        // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read
+        // four texels at once.
         let unlike = ["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"];
         if has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !has(&unlike) {
             all.push("SLOPED_SHADOWS".into());
@@ -289,8 +289,8 @@ mod tests {
         assert_eq!(found, ["RAMP_SHARE".into(), stops]);
     }
 
-    /// Borders of shadows come from the texels of shadow maps where the engine's filter is the one that
-    /// the shader knows, and four texels can be read at once.
+    /// Borders of shadows come from the texels of shadow maps where the engine's filter is the one
+    /// that the shader knows, and four texels can be read at once.
     #[test]
     fn shadows_have_slopes_where_their_filter_is_known() {
         let plain = ToonKey::from(&ToonLight::default());

@@ -1,8 +1,8 @@
 //! The visible ranges of all views, for materials: a texture with a column for each view.
 //!
-//! A bind group of a material belongs to no view, so its shader looks for the column of the view that
-//! it draws. The CPU writes what tells views apart before the frame is drawn; each view copies its
-//! range there between its prepass and its main pass, so the range is that of the frame itself.
+//! A bind group of a material belongs to no view, so its shader looks for the column of the view
+//! that it draws. The CPU writes what tells views apart before the frame is drawn; each view copies
+//! its range there between its prepass and its main pass, so the range is that of the frame itself.
 
 use bevy::{
     app::App,

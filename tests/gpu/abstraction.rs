@@ -114,8 +114,8 @@ fn far_things_are_paler_and_have_fewer_tones() {
     }
 }
 
-/// Dark pixels in the middle columns of the left and the right cards in front, near their horizontal
-/// edges.
+/// Dark pixels in the middle columns of the left and the right cards in front, near their
+/// horizontal edges.
 fn ink(small: &mut Small) -> [usize; 2] {
     let picture = small.settle().picture();
     let mut count = [0; 2];
@@ -146,8 +146,8 @@ fn sharp() -> Outlines {
     }
 }
 
-/// The ink of a near card and a far one with a step of this fraction, without abstraction and with that
-/// of their places, or of levels of their own.
+/// The ink of a near card and a far one with a step of this fraction, without abstraction and with
+/// that of their places, or of levels of their own.
 fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
     let fronts = cards(small, [1.2, 75.0], step);
     let style = ComicStyle::new().with(sharp());
@@ -254,7 +254,8 @@ fn objects_have_colors_of_their_own_level() {
 /// between those at which they appear in its two halves.
 #[test]
 fn lines_of_an_object_follow_its_centre() {
-    // With the same ids of objects each time: the thresholds of a whole are equal to a step at some ids only.
+    // With the same ids of objects each time: the thresholds of a whole are equal to a step at some
+    // ids only.
     let mut small = before_white(Small::alone(options(UVec2::new(96, 64)), Msaa::Off));
     let abstraction = Abstraction {
         line_threshold: 8.0,

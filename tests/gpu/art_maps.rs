@@ -43,7 +43,8 @@ fn dim() -> Small {
     small
 }
 
-/// Truth: maps have the tone of the light at every size and angle, on texture coordinates and on planes.
+/// Truth: maps have the tone of the light at every size and angle, on texture coordinates and on
+/// planes.
 #[test]
 fn flat_walls_have_the_tone_of_their_light() {
     walls_have_the_tone_of_their_light(&[(0.0, &[0.5, 60.0]), (50.0, &[1.6]), (75.0, &[1.0, 8.0])]);

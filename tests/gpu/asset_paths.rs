@@ -128,8 +128,8 @@ fn names(info: &'static TypeInfo, place: &str, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Of all settings of effects and materials, the image of a ramp is the only one by which a file can name
-/// another one: the other images of a material cannot be in files.
+/// Of all settings of effects and materials, the image of a ramp is the only one by which a file
+/// can name another one: the other images of a material cannot be in files.
 #[test]
 fn files_name_one_kind_of_file() {
     let mut found = BTreeSet::new();

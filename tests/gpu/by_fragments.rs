@@ -1,6 +1,7 @@
-//! On a device without storage textures, and in views whose lines are larger than a buffer may be, lines are
-//! found and drawn by fragment shaders: slower, neither linked nor smooth, without weight, boil, fog and
-//! budget, but otherwise the same. The range is still found by compute shaders.
+//! On a device without storage textures, and in views whose lines are larger than a buffer may be,
+//! lines are found and drawn by fragment shaders: slower, neither linked nor smooth, without
+//! weight, boil, fog and budget, but otherwise the same. The range is still found by compute
+//! shaders.
 
 use bevy_comics_testkit::{device::gpu, work::along_cracks};
 
@@ -40,7 +41,8 @@ fn is_by_fragments(studio: &Studio) -> bool {
         == Some(StageOutcome::Skipped(SkipReason::NoComputeShaders))
 }
 
-/// Fails unless the app without compute passes draws the same lines as the other one, and these any.
+/// Fails unless the app without compute passes draws the same lines as the other one, and these
+/// any.
 fn assert_same(with: &mut Studio, without: &mut Studio, plain: &RgbaImage, named: &Named) {
     let (name, style) = named;
     let [wanted, found] = [&mut *with, &mut *without].map(|studio| studio.shoot(Some(style)));
@@ -103,7 +105,8 @@ fn parts_of_lines_without_compute_passes_are_the_same() {
     ]);
 }
 
-/// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by fragments.
+/// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by
+/// fragments.
 #[test]
 fn lines_of_a_view_larger_than_a_buffer_are_the_same() {
     let large = UVec2::new(229, 151);

@@ -14,8 +14,9 @@ use serde_json::{Value, json};
 
 use crate::prelude::*;
 
-/// Builds an example with the profile of this test, in its target folder; nothing is compiled there if
-/// it was built with the tests. Returns what cargo says about the example and all that is linked into it.
+/// Builds an example with the profile of this test, in its target folder; nothing is compiled there
+/// if it was built with the tests. Returns what cargo says about the example and all that is linked
+/// into it.
 pub fn build(example: &'static str) -> Arc<[Value]> {
     static BUILT: Mutex<BTreeMap<&str, Arc<[Value]>>> = Mutex::new(BTreeMap::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -210,8 +211,8 @@ fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
-/// The game plays a level by itself and prints the result. That each level can be won is tested by the
-/// game itself, without drawing it.
+/// The game plays a level by itself and prints the result. That each level can be won is tested by
+/// the game itself, without drawing it.
 #[test]
 #[ignore = "long: draws a village for many frames"]
 fn the_game_finishes_a_level() {

@@ -108,8 +108,8 @@ fn cracks_match_the_reference_bit_by_bit() {
     assert_cracks_match_the_reference(&[(Msaa::Off, Specimen::Foliage, &[all_passes])]);
 }
 
-/// Not the hard surface: where the two bends of a bevel are equal, rounding decides which of them is the
-/// sharper one.
+/// Not the hard surface: where the two bends of a bevel are equal, rounding decides which of them
+/// is the sharper one.
 #[test]
 #[ignore = "long: more models, each with every setting"]
 fn cracks_of_models_match_the_reference_bit_by_bit() {

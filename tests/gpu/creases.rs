@@ -30,8 +30,8 @@ fn creases(weight: LineWeight) -> ComicStyle {
     })
 }
 
-/// The place of the cube of which the edge leans by an angle and passes the middle of the picture at a
-/// distance in pixels.
+/// The place of the cube of which the edge leans by an angle and passes the middle of the picture
+/// at a distance in pixels.
 fn leaning(lean: f32, shift: f32) -> Transform {
     let turned = Quat::from_rotation_z(lean) * Quat::from_rotation_y(45f32.to_radians());
     Transform::from_xyz(shift, 0.0, -400.0).with_rotation(turned)

@@ -1,5 +1,5 @@
-//! Everything at once within the default limits of WebGPU. They count the entries of bind group layouts,
-//! in use or not; `scripts/translate` counts what shaders use.
+//! Everything at once within the default limits of WebGPU. They count the entries of bind group
+//! layouts, in use or not; `scripts/translate` counts what shaders use.
 
 use bevy_comics::toon::TonalArtMap;
 
@@ -35,8 +35,8 @@ fn ball() -> Mesh {
     ball
 }
 
-/// Balls with looks of the toon material under a light, and a cube with sections. All looks have every
-/// texture, and together every option.
+/// Balls with looks of the toon material under a light, and a cube with sections. All looks have
+/// every texture, and together every option.
 fn put_things(small: &mut Small, looks: Range<usize>) {
     let world = small.world();
     let towards = Transform::from_xyz(3.0, 5.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);

@@ -77,8 +77,8 @@ fn all_sky_takes_the_atmosphere_and_nothing_else() {
     assert!(first[0] > first[2], "the atmosphere is warm: {first:?}");
 }
 
-/// Two walls whose distances differ by 1e-6: with the floor of 2^-14 they span 1.7 % of the map, at most
-/// five codes of 255.
+/// Two walls whose distances differ by 1e-6: with the floor of 2^-14 they span 1.7 % of the map, at
+/// most five codes of 255.
 #[test]
 fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
     let mut small = bare(UVec2::new(40, 30));
@@ -149,7 +149,8 @@ fn bright_light_grows_with_its_gain() {
     }
 }
 
-/// A red pane close to the camera is grey where the wall behind it is far, and red where that is near.
+/// A red pane close to the camera is grey where the wall behind it is far, and red where that is
+/// near.
 #[test]
 fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
     let mut small = bare(UVec2::new(60, 40));

@@ -147,9 +147,9 @@ pub fn figure(small: &mut Small, near: f32, far: f32) {
     }
 }
 
-/// A sharp figure before something that is out of focus: it is unchanged, and with it, under MSAA, its
-/// border, which is part figure. Gives the largest code of red beside it, and the number of pixels
-/// that change.
+/// A sharp figure before something that is out of focus: it is unchanged, and with it, under MSAA,
+/// its border, which is part figure. Gives the largest code of red beside it, and the number of
+/// pixels that change.
 fn bleeding(small: &mut Small, style: FocusStyle) -> (u8, usize) {
     let plain = shot(small, &ComicStyle::new());
     let s = Focus {
@@ -173,8 +173,8 @@ fn bleeding(small: &mut Small, style: FocusStyle) -> (u8, usize) {
 }
 
 /// Truth: not a trace of a sharp figure is beside it. Painted, that is so over an even background:
-/// areas that reach over its outline vary, so they do not count; over stripes, where all areas vary,
-/// some do.
+/// areas that reach over its outline vary, so they do not count; over stripes, where all areas
+/// vary, some do.
 #[test]
 fn a_sharp_figure_does_not_bleed() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);

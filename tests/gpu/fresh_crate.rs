@@ -16,8 +16,8 @@ use crate::{
 };
 
 /// Runs a printed program from its own `main`, with the engine's plugins without a window in place
-/// of `DefaultPlugins`. Saves the picture with the outlines and the one without, and says whether there is a
-/// panel.
+/// of `DefaultPlugins`. Saves the picture with the outlines and the one without, and says whether
+/// there is a panel.
 const CHECK: &str = r#"
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use bevy_comics::Outlines;
@@ -159,8 +159,8 @@ fn hue(color: &Rgb<u8>) -> Option<f32> {
     Some((60.0 * sextant).rem_euclid(360.0))
 }
 
-/// Runs a program of the crate, and holds its picture to what the page promises: lines where objects meet.
-/// What it printed.
+/// Runs a program of the crate, and holds its picture to what the page promises: lines where
+/// objects meet. What it printed.
 fn assert_it_draws_a_comic(name: &str) -> String {
     let printed = outside::run(name);
     let [comic, plain] = ["comic.png", "plain.png"].map(|file| {

@@ -50,8 +50,8 @@ fn assert_finite(value: &impl Debug, text: &mut String) {
 /// The word of the uniform of `SpeedLines` that is no number: the seed has all of its bits.
 const SEED: (&str, usize) = ("speed_lines", 13);
 
-/// Whatever a file says, what is used of it can be used: the numbers of all effects, of the lines that they
-/// ask for, and of the depth map are finite, and so is what is packed for the GPU.
+/// Whatever a file says, what is used of it can be used: the numbers of all effects, of the lines
+/// that they ask for, and of the depth map are finite, and so is what is packed for the GPU.
 fn assert_usable(style: &ComicStyle, view: &EffectContext, text: &mut String) {
     let used = style.sanitized();
     assert!(used.sanitized() == used, "{used:?}");

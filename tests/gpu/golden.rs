@@ -1,7 +1,7 @@
-//! Reference pictures of every preset, and of effects that no preset has, each in one scene, 320x180. To
-//! update them, run `cargo run --example pictures -- golden` and look at the result. Those in
-//! `rounding` are copied by hand from the pictures that a failing test leaves in
-//! the target folder.
+//! Reference pictures of every preset, and of effects that no preset has, each in one scene,
+//! 320x180. To update them, run `cargo run --example pictures -- golden` and look at the result.
+//! Those in `rounding` are copied by hand from the pictures that a failing test leaves in the
+//! target folder.
 
 use bevy_comics_testkit::studio::{golden_styles, hatched_theatre};
 use nv_flip::{FlipImageRgb8, FlipPool};

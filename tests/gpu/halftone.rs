@@ -23,8 +23,8 @@ pub fn shot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
     small.settle().picture()
 }
 
-/// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone. Fewer are rendered, by
-/// `rendered_flats_have_their_tone`.
+/// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone. Fewer are
+/// rendered, by `rendered_flats_have_their_tone`.
 #[test]
 #[ignore = "long: 1,320 flat areas in double precision"]
 fn flat_fields_have_their_tone() {
@@ -70,7 +70,8 @@ fn flat_colours_have_their_light_and_need_the_phase_of_black() {
     assert_colours_have_their_light(&[0.5], &[grey_inks]);
 }
 
-/// The same at three fractions of black, and with ideal inks, of which the mean light is the colour.
+/// The same at three fractions of black, and with ideal inks, of which the mean light is the
+/// colour.
 #[test]
 #[ignore = "long: three fractions of black, in double precision"]
 fn flat_colours_have_their_light_at_every_fraction_of_black() {
@@ -255,8 +256,8 @@ fn screened(s: Halftone) -> ComicStyle {
     with_map(style, map)
 }
 
-/// The whole pass, pixel by pixel, in every mode; in two passes where cells are read. Also with surface
-/// lines, tone bands and several samples.
+/// The whole pass, pixel by pixel, in every mode; in two passes where cells are read. Also with
+/// surface lines, tone bands and several samples.
 #[test]
 fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
@@ -367,8 +368,8 @@ fn impossible_periods_show_a_picture() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The pictures before and after the pass keep their opacity, and nothing is printed where nothing is.
-/// `least`: pixels of background.
+/// The pictures before and after the pass keep their opacity, and nothing is printed where nothing
+/// is. `least`: pixels of background.
 pub fn assert_background_stays(small: &Small, least: usize) {
     let (before, after) = small.pass();
     let mut empty = 0;

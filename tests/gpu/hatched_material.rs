@@ -1,5 +1,5 @@
-//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of the mesh
-//! at rest.
+//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of
+//! the mesh at rest.
 
 use bevy::{
     camera::visibility::NoFrustumCulling, light::DirectionalLightShadowMap,
@@ -68,8 +68,8 @@ pub fn tone(hatching: &Hatching, share: f64) -> f64 {
 /// Light from the front, from behind, and from all around.
 const LIGHT: [[f32; 3]; 3] = [[0.3, 0.9, 0.0], [0.6, 0.4, 0.0], [0.0, 0.6, 0.2]];
 
-/// Truth: a flat wall on which a share of all light arrives has the darkness that this share asks for, at
-/// every angle, with one layer and with three.
+/// Truth: a flat wall on which a share of all light arrives has the darkness that this share asks
+/// for, at every angle, with one layer and with three.
 #[test]
 fn flat_walls_have_the_tone_of_their_light() {
     let [back, front, around] = LIGHT;
@@ -187,8 +187,8 @@ impl WhiteRoom {
         covers(small)
     }
 
-    /// Checks that the camera sees the same picture from every frame, after something has moved with it.
-    /// Edges of the light and the mesh may round to another pixel.
+    /// Checks that the camera sees the same picture from every frame, after something has moved
+    /// with it. Edges of the light and the mesh may round to another pixel.
     pub fn assert_stays(
         &mut self,
         still: &[f64],
@@ -226,8 +226,8 @@ pub fn assert_marks_stay(s: Hatching) {
     assert!(differ(&still, &turned, 2.0 / 255.0) > still.len() / 20);
 }
 
-/// Truth: strokes stay on a mesh that moves: the camera that follows sees the same picture. Strokes of the
-/// page do not.
+/// Truth: strokes stay on a mesh that moves: the camera that follows sees the same picture. Strokes
+/// of the page do not.
 #[test]
 fn strokes_stay_on_what_moves() {
     assert_marks_stay(inked());

@@ -116,7 +116,8 @@ fn flat_fields_keep_their_mean_tone_on_every_wall() {
     fields_keep_their_mean_tone(&LIGHTS, &WALLS, &layered());
 }
 
-/// Strokes of one layer and three, without what is random and with it, and the limits of their means.
+/// Strokes of one layer and three, without what is random and with it, and the limits of their
+/// means.
 fn layered() -> Vec<(Hatching, f64)> {
     let of = |layers| {
         let even = Hatching {
@@ -214,9 +215,10 @@ fn strokes_are_where_the_plane_is() {
 /// Half of the view in both directions, which is seen while the camera comes nearer.
 const MIDDLE: UVec2 = UVec2::new(80, 60);
 
-/// The largest change of a pixel near the middle of the picture, while the camera comes nearer to the middle
-/// of a wall 20 units away by 0.5 % in each frame, through more than an octave. Near the middle, things move
-/// by less than 0.1 pixels a frame. The camera sees the middle of the view. The mean tone stays.
+/// The largest change of a pixel near the middle of the picture, while the camera comes nearer to
+/// the middle of a wall 20 units away by 0.5 % in each frame, through more than an octave. Near the
+/// middle, things move by less than 0.1 pixels a frame. The camera sees the middle of the view. The
+/// mean tone stays.
 pub fn largest_change(light: f32, degrees: f32, s: Hatching) -> f64 {
     let mut small = empty();
     flat(&mut small, light, tilted(degrees, 20.0));
@@ -260,7 +262,8 @@ fn strokes_of_every_tone_grow_while_the_camera_comes_nearer() {
     }
 }
 
-/// The amounts of ink between white pixels in the middle row of the picture, but for those at its ends.
+/// The amounts of ink between white pixels in the middle row of the picture, but for those at its
+/// ends.
 fn strokes_of_a_row(covers: &[f64]) -> Vec<f64> {
     let row = &covers[60 * SIZE.x as usize..61 * SIZE.x as usize];
     let strokes = row.chunk_by(|a, b| !(*a > 0.0 && *b == 0.0));
@@ -270,9 +273,9 @@ fn strokes_of_a_row(covers: &[f64]) -> Vec<f64> {
     found
 }
 
-/// Truth: through an octave of distance, the strokes that are there keep their width within 0.1 pixels,
-/// and those that grow between them are never wider. On a wall that faces the eye, strokes of one
-/// layer are a grating.
+/// Truth: through an octave of distance, the strokes that are there keep their width within 0.1
+/// pixels, and those that grow between them are never wider. On a wall that faces the eye, strokes
+/// of one layer are a grating.
 #[test]
 fn strokes_keep_their_width_through_an_octave() {
     let mut small = empty();
@@ -306,7 +309,8 @@ fn strokes_keep_their_width_through_an_octave() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Truth: at full abstraction strokes are as far apart as it says, and half way by ratio in between.
+/// Truth: at full abstraction strokes are as far apart as it says, and half way by ratio in
+/// between.
 #[test]
 fn abstraction_draws_strokes_farther_apart() {
     let mut small = empty();
@@ -341,7 +345,8 @@ fn strokes_travel_with_their_object() {
     assert_marks_travel(s, Vec3::new(9000.0, 500.0, -7000.0), 5.0 / 255.0);
 }
 
-/// A camera that follows an object sees the same picture, within a limit: normals are known to ten bits.
+/// A camera that follows an object sees the same picture, within a limit: normals are known to ten
+/// bits.
 pub fn assert_marks_travel(s: Hatching, by: Vec3, limit: f64) {
     let mut small = empty();
     let at = tilted(30.0, 12.0);
@@ -394,8 +399,8 @@ fn calm_changes_nothing_on_large_surfaces() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Truth: where everything is smaller than the distance of two strokes, the picture is more even, and
-/// its mean stays.
+/// Truth: where everything is smaller than the distance of two strokes, the picture is more even,
+/// and its mean stays.
 #[test]
 fn what_is_small_is_more_even() {
     let mut small = empty();
@@ -454,8 +459,8 @@ pub fn extreme(marks: HatchingMarks, x: f32) -> Hatching {
 
 pub const EXTREMES: [f32; 5] = [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30];
 
-/// The sky has no marks on things; light walls have none, black ones are solid; values out of range are
-/// clamped.
+/// The sky has no marks on things; light walls have none, black ones are solid; values out of range
+/// are clamped.
 #[test]
 fn extreme_hatching_is_finite() {
     let mut small = empty();

@@ -158,8 +158,8 @@ fn no_modules_import_each_other_in_a_circle() {
     assert_eq!(circle(&graph), None, "{graph:#?}");
 }
 
-/// The test binary does not fail for a name that matches no test: `scripts/gpu` would test less than it
-/// says, or run what it means to leave out.
+/// The test binary does not fail for a name that matches no test: `scripts/gpu` would test less
+/// than it says, or run what it means to leave out.
 #[test]
 fn the_tests_that_the_script_for_gpus_names_exist() {
     let program = std::env::current_exe().expect("the path of the tests");

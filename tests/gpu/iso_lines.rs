@@ -25,8 +25,8 @@ fn draw(small: &mut Small, lines: IsoLines) -> image::RgbaImage {
     small.picture()
 }
 
-/// Checks where the middle of the ink near a place along a row of pixels is, and how much there is of
-/// it. `slack`: of the place and of the width.
+/// Checks where the middle of the ink near a place along a row of pixels is, and how much there is
+/// of it. `slack`: of the place and of the width.
 fn assert_line(ink: impl Fn(u32) -> f64, [at, width]: [f64; 2], slack: [f64; 2]) {
     let from = (at - 3.9).floor().max(0.0) as u32;
     let [mut sum, mut moment] = [0.0; 2];

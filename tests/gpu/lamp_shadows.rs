@@ -17,8 +17,8 @@ fn lights() -> [(&'static str, Kind); 3] {
     ]
 }
 
-/// How much of a pixel of the ground the lamp reaches, from 64 rays; `None` beside the ground and where
-/// `cone` says so.
+/// How much of a pixel of the ground the lamp reaches, from 64 rays; `None` beside the ground and
+/// where `cone` says so.
 fn true_cover(stage: &Stage, light: &Kind, x: u32, y: u32) -> Option<f64> {
     let mut lit = 0;
     for k in 0..64u32 {
@@ -35,8 +35,8 @@ fn true_cover(stage: &Stage, light: &Kind, x: u32, y: u32) -> Option<f64> {
     Some(f64::from(lit) / 64.0)
 }
 
-/// Truth: what pixels on the border of a shadow show is how much of them the light reaches. The border
-/// in the shadow map has steps of a texel, so single pixels are off; their mean is not.
+/// Truth: what pixels on the border of a shadow show is how much of them the light reaches. The
+/// border in the shadow map has steps of a texel, so single pixels are off; their mean is not.
 #[test]
 fn borders_of_shadows_cover_what_the_light_reaches() {
     let mut stage = stage(&lights()[0].1, Msaa::Off);
@@ -80,8 +80,8 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
         println!(
             "{name}: {count} border pixels, {between} between, off by {off:.4}, mean {mean:.4}"
         );
-        // Shadow maps are moved by their biases, towards the shadow. With the slope from neighbouring
-        // pixels, the sun's were off by 0.24, and 0.28 of them lay between.
+        // Shadow maps are moved by their biases, towards the shadow. With the slope from
+        // neighbouring pixels, the sun's were off by 0.24, and 0.28 of them lay between.
         let (most, moved, least, part) = match light {
             Kind::Sun(_) => (0.21, 0.18, 130, 0.45),
             Kind::Lamp(_) => (0.16, 0.1, 150, 0.5),
@@ -94,8 +94,8 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
     }
 }
 
-/// Every pixel is finite on a wall in the plane of a spot light, before it and behind it; where a lamp
-/// stands on the ground; and where a sun is right behind the ground, seen from the eye.
+/// Every pixel is finite on a wall in the plane of a spot light, before it and behind it; where a
+/// lamp stands on the ground; and where a sun is right behind the ground, seen from the eye.
 #[test]
 fn lights_beside_on_and_behind_surfaces_are_finite() {
     let (from, to) = (Vec3::new(0.0, 0.7, 3.0), Vec3::new(0.0, 0.7, -5.0));
@@ -150,9 +150,9 @@ fn change_lights(stage: &mut Stage, change: impl Fn(&mut f32, &mut bool)) {
     }
 }
 
-/// Truth: light falls off with the square of the distance and ends at its range, smoothly or in rings; the
-/// cone of a spot light ends in the middle between its two angles. A ramp over the fraction of all light
-/// keeps the rings.
+/// Truth: light falls off with the square of the distance and ends at its range, smoothly or in
+/// rings; the cone of a spot light ends in the middle between its two angles. A ramp over the
+/// fraction of all light keeps the rings.
 #[test]
 fn light_of_lamps_falls_off_to_its_range() {
     const INTENSITY: f32 = 120_000.0;
@@ -275,8 +275,8 @@ fn be_standard(stage: &mut Stage) {
     }
 }
 
-/// What is left of the light of each pixel because of shadow maps: 0 to 1. `None`: the lamp does not
-/// reach it, shadows or not.
+/// What is left of the light of each pixel because of shadow maps: 0 to 1. `None`: the lamp does
+/// not reach it, shadows or not.
 fn left_of_light(stage: &mut Stage) -> Vec<Option<f32>> {
     let mut light = |factor: f32, has_shadows: bool| {
         change_lights(stage, |intensity, has_maps| {

@@ -1,5 +1,5 @@
-//! Pictures with OpenGL, beside those with Vulkan, and within the limits of WebGL 2. Elsewhere, OpenGL
-//! without a window is not to be had.
+//! Pictures with OpenGL, beside those with Vulkan, and within the limits of WebGL 2. Elsewhere,
+//! OpenGL without a window is not to be had.
 #![cfg(target_os = "linux")]
 
 use bevy::light::cluster::GlobalClusterSettings;
@@ -66,8 +66,8 @@ fn every_preset_is_drawn_as_with_vulkan() {
     check(BuiltIn::Teapot, &styles, 0.0005);
 }
 
-/// OpenGL stores depth as 0.5 (2 z - 1) + 0.5, in steps of 6e-8, which are half a per cent of the distance
-/// of the mountains: lines and borders of dots at their limit are others.
+/// OpenGL stores depth as 0.5 (2 z - 1) + 0.5, in steps of 6e-8, which are half a per cent of the
+/// distance of the mountains: lines and borders of dots at their limit are others.
 #[ignore = "long: four looks in two large scenes, twice"]
 #[test]
 fn far_scenes_are_nearly_those_with_vulkan() {
@@ -92,8 +92,8 @@ fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> 
     Small::alone(options, msaa)
 }
 
-/// The rim of a ball has the same width everywhere where the adapter loads depth. With OpenGL it is where
-/// the ball turns away, since a pipeline of a material that loads depth is not valid.
+/// The rim of a ball has the same width everywhere where the adapter loads depth. With OpenGL it is
+/// where the ball turns away, since a pipeline of a material that loads depth is not valid.
 #[test]
 fn two_apps_in_one_process_draw_what_each_draws_alone() {
     let [vulkan, gl] = APIS;
@@ -131,8 +131,8 @@ fn two_apps_in_one_process_draw_what_each_draws_alone() {
     assert!(draw(third) == alone[0], "Vulkan, after OpenGL");
 }
 
-/// wgpu cannot read multisampled textures with OpenGL: what needs depth is left out, whether this crate or
-/// the game asked for the prepass.
+/// wgpu cannot read multisampled textures with OpenGL: what needs depth is left out, whether this
+/// crate or the game asked for the prepass.
 #[test]
 fn multisampled_views_are_drawn_without_depth() {
     let mut app = small(wgpu::Backends::GL, None, Msaa::Sample4);
@@ -189,9 +189,9 @@ fn every_effect_is_drawn_as_with_vulkan() {
 /// Set in the process of a test that has one of its own.
 const ALONE: &str = "WEBGL2_ALONE";
 
-/// Runs a test of this file in a process of its own, in which no device has storage buffers. The engine looks
-/// at one device in a process (`bevy_render::storage_buffers_are_unsupported`, Bevy 0.19.1), so that
-/// apps with and without them cannot be in the same one.
+/// Runs a test of this file in a process of its own, in which no device has storage buffers. The
+/// engine looks at one device in a process (`bevy_render::storage_buffers_are_unsupported`, Bevy
+/// 0.19.1), so that apps with and without them cannot be in the same one.
 fn alone(name: &str, api: wgpu::Backends) {
     if std::env::var_os(ALONE).is_some() {
         return check_webgl2(api);
@@ -207,8 +207,8 @@ fn alone(name: &str, api: wgpu::Backends) {
     assert!(text.contains("1 passed"), "no test has run: {text}");
 }
 
-/// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colours at once, than it
-/// promises.
+/// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colours at once,
+/// than it promises.
 fn check_webgl2(api: wgpu::Backends) {
     let limits = wgpu::Limits::downlevel_webgl2_defaults();
     let mut app = small(api, Some(limits), Msaa::Off);

@@ -237,8 +237,8 @@ fn the_border_of_the_picture_is_no_line() {
     assert!(lines.iter().all(|i| *i < 0.02), "the picture is one plane");
 }
 
-/// In every row a line covers its width, within 0.02 physical pixels: the ink at both of its borders
-/// is rounded, and so is its stored width, to 1/1024.
+/// In every row a line covers its width, within 0.02 physical pixels: the ink at both of its
+/// borders is rounded, and so is its stored width, to 1/1024.
 #[test]
 #[ignore = "long: every scale at every resolution"]
 fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
@@ -276,8 +276,8 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
     }
 }
 
-/// A crease that the corrected equations finds is whole beside silhouettes of the faithful equations,
-/// whose threshold is one of raw depth and says nothing about a jump between surfaces.
+/// A crease that the corrected equations finds is whole beside silhouettes of the faithful
+/// equations, whose threshold is one of raw depth and says nothing about a jump between surfaces.
 #[test]
 fn measured_creases_are_whole_beside_faithful_silhouettes() {
     let mut small = Small::new(UVec2::new(160, 120), Msaa::Off);

@@ -1,5 +1,6 @@
-//! A crate outside the repository, compiled with the libraries that the tests are linked with. Cargo
-//! would compile `bevy_comics` again, because a path outside of the workspace makes it another crate.
+//! A crate outside the repository, compiled with the libraries that the tests are linked with.
+//! Cargo would compile `bevy_comics` again, because a path outside of the workspace makes it
+//! another crate.
 //!
 //! Tests add their files to one crate, so that it is compiled and linked once for all of them.
 

@@ -143,7 +143,8 @@ fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
     }
 }
 
-/// The example's effect leaves the lines at its distance as they are, and takes ink from all others.
+/// The example's effect leaves the lines at its distance as they are, and takes ink from all
+/// others.
 #[test]
 fn an_effect_of_a_game_thins_lines() {
     let size = UVec2::new(96, 64);

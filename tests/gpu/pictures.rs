@@ -204,9 +204,9 @@ pub fn assert_pass_matches_the_reference(
     );
 }
 
-/// Compares every pixel of a pass after the fused pass with its reference. That starts from the picture
-/// of the style `before`, as it is stored between the passes: in 11 bits. A nudge moves what decides
-/// which pixels are read; at most 1 pixel in 200 may depend on it.
+/// Compares every pixel of a pass after the fused pass with its reference. That starts from the
+/// picture of the style `before`, as it is stored between the passes: in 11 bits. A nudge moves
+/// what decides which pixels are read; at most 1 pixel in 200 may depend on it.
 pub fn assert_later_pass_matches_the_reference<E: Effect>(
     small: &mut Small,
     before: &ComicStyle,
@@ -275,9 +275,9 @@ fn apart(a: Rgba, b: Rgba) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// A style without what the reference of the whole picture does not know and other tests check: paint,
-/// hatching, iso-lines, lines in the colours of surfaces, and of layers the borders that are found,
-/// whole objects and lines.
+/// A style without what the reference of the whole picture does not know and other tests check:
+/// paint, hatching, iso-lines, lines in the colours of surfaces, and of layers the borders that are
+/// found, whole objects and lines.
 fn known_to_reference(style: ComicStyle) -> ComicStyle {
     let mut style = style
         .without::<Paint>()
@@ -303,8 +303,8 @@ fn known_to_reference(style: ComicStyle) -> ComicStyle {
 }
 
 /// A preset as the reference of the whole picture knows it. One with layers and tints is compared
-/// twice, without the ones and without the others: steps of tints are ten times as steep as tones, and
-/// turn the rounding of the layers' colours into another tint.
+/// twice, without the ones and without the others: steps of tints are ten times as steep as tones,
+/// and turn the rounding of the layers' colours into another tint.
 pub fn known_forms(preset: &Preset) -> Vec<ComicStyle> {
     let style = known_to_reference(preset.style().sanitized());
     let mut untinted = style.clone();
@@ -612,7 +612,8 @@ fn an_hdr_camera_matches_the_reference() {
     check(&mut small, None, styles);
 }
 
-/// With fixed borders, over a background that shows through; those that are found are tested in `depth_layers.rs`.
+/// With fixed borders, over a background that shows through; those that are found are tested in
+/// `depth_layers.rs`.
 #[test]
 fn layers_match_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);

@@ -109,7 +109,8 @@ fn documented(slider: &str) -> usize {
     most.parse().expect("a number of pipelines")
 }
 
-/// Drags every slider over so many values, or only those of some effects. Gives the number of sliders.
+/// Drags every slider over so many values, or only those of some effects. Gives the number of
+/// sliders.
 fn drag(steps: usize, is_dragged: impl Fn(&str) -> bool) -> usize {
     let mut small = Small::alone(options(UVec2::new(16, 12)), Msaa::Off);
     let mut seen = 0;

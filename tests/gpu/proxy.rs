@@ -90,8 +90,9 @@ fn turned() -> Quat {
     Quat::from_euler(EulerRot::YXZ, 0.7, 0.5, 0.3)
 }
 
-/// The normal of a ball through the place of a cube that a pixel of 160 by 160 shows, if it does, and
-/// its change over a pixel on the same face, as found from a neighbour (1: right, down; -1: left, up).
+/// The normal of a ball through the place of a cube that a pixel of 160 by 160 shows, if it does,
+/// and its change over a pixel on the same face, as found from a neighbour (1: right, down; -1:
+/// left, up).
 fn ball_on_cube(x: u32, y: u32, beside: [f64; 2]) -> Option<Surface> {
     let rotation = turned().as_dquat();
     let back = rotation.inverse();
@@ -122,8 +123,8 @@ fn ball_on_cube(x: u32, y: u32, beside: [f64; 2]) -> Option<Surface> {
     })
 }
 
-/// Truth: a cube that is shaded as a ball has the tones of the ball at every pixel, also at the borders of
-/// its faces.
+/// Truth: a cube that is shaded as a ball has the tones of the ball at every pixel, also at the
+/// borders of its faces.
 #[test]
 fn a_cube_as_a_ball_has_its_tones() {
     let shape = ProxyShape::Ellipsoid {
@@ -157,8 +158,8 @@ fn a_cube_as_a_ball_has_its_tones() {
         seen += 1;
         let (low, high) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
         let found = linear(&picture, x, y)[0];
-        // The row of the derivative may be the neighbour's too, which changes it as much as the choice
-        // of the neighbour does. Half a code near white is 0.0046 in linear light.
+        // The row of the derivative may be the neighbour's too, which changes it as much as the
+        // choice of the neighbour does. Half a code near white is 0.0046 in linear light.
         let slack = 0.0046 + high - low;
         assert!(
             (low - slack..=high + slack).contains(&found),

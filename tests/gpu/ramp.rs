@@ -93,7 +93,8 @@ pub fn set_light(small: &mut Small, light: &ToonLight) {
     }
 }
 
-/// The picture after a change. The engine knows one frame later how far the clusters of a new light reach.
+/// The picture after a change. The engine knows one frame later how far the clusters of a new light
+/// reach.
 pub fn drawn(small: &mut Small) -> RgbaImage {
     small.headless.step(3);
     let picture = small.picture();
@@ -234,8 +235,8 @@ fn fractions(picture: &RgbaImage) -> [f64; 4] {
     counts.map(|n| n as f64 / all as f64)
 }
 
-/// Checks that tones of a ball that begin at three places have the areas of its caps: rings around the light,
-/// or segments. `light` gives the light of a mode that has black, red, green and blue.
+/// Checks that tones of a ball that begin at three places have the areas of its caps: rings around
+/// the light, or segments. `light` gives the light of a mode that has black, red, green and blue.
 pub fn check_caps(at: [f32; 3], light: impl Fn(&mut Small, RampMode) -> ToonLight) {
     let mut small = room(UVec2::splat(120), 0.0);
     let ball = Sphere::new(0.95).mesh().uv(128, 64);
@@ -300,8 +301,8 @@ pub fn leaning() -> Mesh {
 /// The view of [`check_edge`], of 16 pixels a unit.
 pub const EDGE_SIZE: UVec2 = UVec2::new(64, 32);
 
-/// Checks that, over 64 shifts of the leaning square by parts of a pixel, a row is white from where the
-/// cosine is `at`, within `most` of a pixel, and exactly so in the mean.
+/// Checks that, over 64 shifts of the leaning square by parts of a pixel, a row is white from where
+/// the cosine is `at`, within `most` of a pixel, and exactly so in the mean.
 pub fn check_edge(small: &mut Small, square: Entity, at: f64, most: f64) {
     let per_unit = 16.0;
     let edge = 2.0 * at / (1.0 - at * at).sqrt();
@@ -339,8 +340,9 @@ fn edges_of_tones_cover_what_they_should() {
     check_edge(&mut small, square, 0.4, 0.15);
 }
 
-/// Checks that the border of a shadow on a wall has no tone between light and shade. `light_of` gives the light
-/// of a mode, with a ramp from black over red and green to white from 0.6 to 0.8 on.
+/// Checks that the border of a shadow on a wall has no tone between light and shade. `light_of`
+/// gives the light of a mode, with a ramp from black over red and green to white from 0.6 to 0.8
+/// on.
 pub fn check_borders(light_of: impl Fn(&mut Small, RampMode) -> ToonLight) {
     let mut small = room(SIZE, 0.0);
     let light = ToonLight::default();

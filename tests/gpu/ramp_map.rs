@@ -1,4 +1,5 @@
-//! Painted ramps of the toon material: tones, edges, shadows, rows, files, and images that cannot be used.
+//! Painted ramps of the toon material: tones, edges, shadows, rows, files, and images that cannot
+//! be used.
 
 use bevy_comics::ToonShadingHandle;
 use bevy_comics_testkit::reference::{Rgb, color::srgb_encode, toon::tones::Tones};
@@ -84,8 +85,8 @@ fn soft() -> Ramp {
     ])
 }
 
-/// Checks that an image of a soft ramp is that ramp, in these modes and blends, under several lights with
-/// shadows of these strengths.
+/// Checks that an image of a soft ramp is that ramp, in these modes and blends, under several
+/// lights with shadows of these strengths.
 fn check_soft_ramps(cases: impl IntoIterator<Item = (RampMode, RampBlend, f32)>) {
     let tones = Tones::new(&soft(), 1.0);
     let tone = |k: u32| tones.at((f64::from(k) + 0.5) / 1024.0, 0.0).to_array();
@@ -108,9 +109,9 @@ fn check_soft_ramps(cases: impl IntoIterator<Item = (RampMode, RampBlend, f32)>)
         let wanted = drawn(&mut small);
         set_light(&mut small, &map);
         let found = drawn(&mut small);
-        // Half a texel of a tone that rises by 3 per unit is 0.4 of a code of linear light, and up to 1.2
-        // of a dark display. Along the borders of shadows, stops and images do not weaken soft tones
-        // alike.
+        // Half a texel of a tone that rises by 3 per unit is 0.4 of a code of linear light, and up
+        // to 1.2 of a dark display. Along the borders of shadows, stops and images do not weaken
+        // soft tones alike.
         let off = [2, 60].map(|codes| differ(&found, &wanted, codes));
         let what = format!("{mode:?}, {blend:?}, {strength}: {off:?}");
         let all = found.pixels().len();
@@ -144,8 +145,8 @@ fn is_near(found: Rgb, wanted: Rgb, most: f64) -> bool {
     (0..3).all(|c| (found[c] - wanted[c]).abs() < most)
 }
 
-/// Checks that in these modes rows lie along the second axis, the first one where there is all detail;
-/// between rows, tones are mixed in linear light.
+/// Checks that in these modes rows lie along the second axis, the first one where there is all
+/// detail; between rows, tones are mixed in linear light.
 fn check_rows(modes: &[RampMode]) {
     let mut small = room(UVec2::splat(120), 0.0);
     let rows = [vec![RED, RED], vec![GREEN, GREEN], vec![BLUE, BLUE]];
@@ -222,8 +223,8 @@ fn rows_are_the_second_axis_in_every_mode() {
     check_rows(&MODES);
 }
 
-/// Truth: many tones in a pixel are their mean, without moire; over 64 shifts by parts of a pixel, an edge
-/// covers what it should.
+/// Truth: many tones in a pixel are their mean, without moire; over 64 shifts by parts of a pixel,
+/// an edge covers what it should.
 #[test]
 fn pixels_have_the_mean_of_painted_tones() {
     let mut small = room(EDGE_SIZE, 0.0);
@@ -237,8 +238,8 @@ fn pixels_have_the_mean_of_painted_tones() {
     let square = put(&mut small, leaning(), &light, Transform::IDENTITY);
     sun(&mut small, Vec3::X, bright(1.0));
     let picture = drawn(&mut small);
-    // The cosine is t / sqrt(1 + t^2) at t = x / 32 pixels: near the middle it changes by 32 texels a pixel.
-    // Of the mean, half a texel may be left over.
+    // The cosine is t / sqrt(1 + t^2) at t = x / 32 pixels: near the middle it changes by 32 texels
+    // a pixel. Of the mean, half a texel may be left over.
     for x in 34..56 {
         let t = (f64::from(x) + 0.5 - 32.0) / 32.0;
         let texels = 1024.0 / 32.0 * (1.0 + t * t).powf(-1.5);
@@ -335,8 +336,8 @@ fn greys(code: u8) -> RgbaImage {
     RgbaImage::from_pixel(16, 1, image::Rgba([code, code, code, 255]))
 }
 
-/// Tones follow when code changes an image. One that cannot be used leaves the stops, of which the last
-/// one is white; images in sRGB and in linear light give the colours that they mean.
+/// Tones follow when code changes an image. One that cannot be used leaves the stops, of which the
+/// last one is white; images in sRGB and in linear light give the colours that they mean.
 #[test]
 fn tones_follow_their_image() {
     let mut small = room(UVec2::splat(16), 0.0);
@@ -371,7 +372,8 @@ fn tones_follow_their_image() {
     }
 }
 
-/// A look names its image by its path, which is loaded with it, and read again when its file changes.
+/// A look names its image by its path, which is loaded with it, and read again when its file
+/// changes.
 #[test]
 fn looks_name_their_images_by_path() {
     let folder = Folder::new("ramp-map");

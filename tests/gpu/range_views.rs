@@ -24,8 +24,8 @@ pub fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &st
     assert_eq!(found, scan, "{what}");
 }
 
-/// The range that the game reads, and the picture, which follows percentiles within the outermost bins: they
-/// are clamped to the extremes.
+/// The range that the game reads, and the picture, which follows percentiles within the outermost
+/// bins: they are clamped to the extremes.
 #[test]
 fn every_method_reads_every_sample_of_a_rendered_view() {
     let samples = headless::adapter().expect("an adapter").samples;

@@ -29,7 +29,8 @@ fn side(small: &mut Small, lean: f32, shift: f32) {
 }
 
 /// Truth: the side has one silhouette on its left and one on its right in every row. Before, the
-/// right one was a silhouette in half of the rows only, and a crease or an object edge in the others.
+/// right one was a silhouette in half of the rows only, and a crease or an object edge in the
+/// others.
 #[test]
 fn a_rim_is_one_silhouette() {
     let mut small = Small::new(SIZE, Msaa::Off);

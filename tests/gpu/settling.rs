@@ -13,8 +13,8 @@ fn deep(distance: f64) -> f32 {
     (1.0 - distance / 1e5) as f32
 }
 
-/// What is left of a way is e to the power of the number of time constants: `expand` where an end moves
-/// outwards, `shrink` where it moves inwards.
+/// What is left of a way is e to the power of the number of time constants: `expand` where an end
+/// moves outwards, `shrink` where it moves inwards.
 #[test]
 fn every_range_arrives_in_the_stated_time() {
     let s = Smoothing {

@@ -84,8 +84,8 @@ impl Small {
         Self::with(options(size), msaa)
     }
 
-    /// The app may have drawn other tests before ([`Pool`]). A test of what an app does first, or of what it
-    /// finds out for good, needs [`Small::alone`].
+    /// The app may have drawn other tests before ([`Pool`]). A test of what an app does first, or
+    /// of what it finds out for good, needs [`Small::alone`].
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
         Self::of(POOL.take(options), msaa)
     }
@@ -175,9 +175,9 @@ impl Small {
         world.flush();
     }
 
-    /// Renders until a change has reached the picture and the diagnostics: until two frames in turn report
-    /// the same stages. The depth range arrives in the game a few frames later than the picture, so an app
-    /// whose camera reads it back renders all frames.
+    /// Renders until a change has reached the picture and the diagnostics: until two frames in turn
+    /// report the same stages. The depth range arrives in the game a few frames later than the
+    /// picture, so an app whose camera reads it back renders all frames.
     pub fn settle(&mut self) -> &mut Self {
         const LEAST: usize = 3;
         const MOST: usize = 5;

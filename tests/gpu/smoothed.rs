@@ -91,8 +91,8 @@ fn with_normals(mut mesh: Mesh, codes: &[[i16; 2]]) -> Mesh {
     mesh
 }
 
-/// The picture of smoothed normals is that of a mesh that has them as its own: here on entities that
-/// are turned and stretched, beside prepasses, and of some of the amount.
+/// The picture of smoothed normals is that of a mesh that has them as its own: here on entities
+/// that are turned and stretched, beside prepasses, and of some of the amount.
 #[test]
 fn smoothed_normals_are_normals() {
     let mut small = studio();

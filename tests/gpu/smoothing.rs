@@ -403,7 +403,8 @@ fn ends_that_would_pass_each_other_meet() {
     }
 }
 
-/// The range of a view whose outermost pixels, a fraction of all, are left out, and that of the reference.
+/// The range of a view whose outermost pixels, a fraction of all, are left out, and that of the
+/// reference.
 pub fn percentiles(s: &Smoothing, bins: Bins, fraction: f32, depths: &[f32]) -> [[f64; 2]; 2] {
     let nearest = depths.iter().copied().fold(0.0, f32::max);
     let farthest = depths.iter().copied().fold(1.0, f32::min);

@@ -1,10 +1,10 @@
-//! A short run in which everything changes. The long one is `report --only soak`, which looks at the memory
-//! of the process too: here looks change, and the driver keeps memory for each.
+//! A short run in which everything changes. The long one is `report --only soak`, which looks at
+//! the memory of the process too: here looks change, and the driver keeps memory for each.
 
 use bevy_comics_testkit::soak::{Changes, Pace, Sample, Soak};
 
-/// Draws cycles of changes: as many as there are kinds of cameras, then twice the same, after which the GPU
-/// must hold the same.
+/// Draws cycles of changes: as many as there are kinds of cameras, then twice the same, after which
+/// the GPU must hold the same.
 fn assert_nothing_is_left(changes: Changes, pace: Pace) {
     let name = format!("bevy_comics_soak_{}_{}", changes.looks, std::process::id());
     let folder = std::env::temp_dir().join(name);
@@ -44,8 +44,8 @@ fn a_short_run_leaves_nothing_behind() {
 
 /// Nor of materials, looks and broken files.
 ///
-/// The looks here are the first ones, which have lines between objects: other looks would have the buffers of
-/// object ids made anew, which takes up to 64 frames.
+/// The looks here are the first ones, which have lines between objects: other looks would have the
+/// buffers of object ids made anew, which takes up to 64 frames.
 #[ignore = "long: a thousand frames"]
 #[test]
 fn a_thousand_frames_leave_nothing_behind() {

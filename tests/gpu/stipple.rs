@@ -27,8 +27,8 @@ fn random() -> Hatching {
     }
 }
 
-/// Truth: the mean of a flat field has the darkness that its lightness asks for, at every tone, angle
-/// and distance, in rows and at random.
+/// Truth: the mean of a flat field has the darkness that its lightness asks for, at every tone,
+/// angle and distance, in rows and at random.
 #[test]
 fn flat_fields_of_dots_keep_their_mean_tone() {
     dots_keep_their_mean_tone(&THREE_LIGHTS, &TWO_WALLS);
@@ -87,9 +87,9 @@ fn dots(covers: &[f64]) -> Vec<Dot> {
     found
 }
 
-/// Truth, on counted dots: all dots but those that grow have the same area at every distance, there are
-/// as many as the tone asks for, and each is where it was when the camera has come to half the distance,
-/// where four times as many are on as much of the wall.
+/// Truth, on counted dots: all dots but those that grow have the same area at every distance, there
+/// are as many as the tone asks for, and each is where it was when the camera has come to half the
+/// distance, where four times as many are on as much of the wall.
 #[test]
 fn dots_stay_and_more_of_them_grow() {
     let mut small = empty();
@@ -160,8 +160,8 @@ fn dots_stay_and_more_of_them_grow() {
     }
 }
 
-/// Truth: no dot appears at once. While the camera comes nearer by 0.5 % in each frame, no pixel changes by
-/// more than the motion and the growth of a dot explain.
+/// Truth: no dot appears at once. While the camera comes nearer by 0.5 % in each frame, no pixel
+/// changes by more than the motion and the growth of a dot explain.
 #[test]
 fn dots_grow_while_the_camera_comes_nearer() {
     assert_dots_grow(random());
@@ -175,9 +175,9 @@ fn dots_in_rows_grow_while_the_camera_comes_nearer() {
 
 fn assert_dots_grow(s: Hatching) {
     let largest = largest_change(0.2, 25.0, s);
-    // Within 20 pixels of the middle, things move by 0.1 pixels. While there are x^2 dots for each old
-    // one, the newest grows by 2 * 0.005 * x^2 of its area in a frame: the last of three begins at
-    // x^2 = 3.
+    // Within 20 pixels of the middle, things move by 0.1 pixels. While there are x^2 dots for each
+    // old one, the newest grows by 2 * 0.005 * x^2 of its area in a frame: the last of three begins
+    // at x^2 = 3.
     let growth = 0.03 * PI * dot_radius(&s, 4.0).powi(2);
     assert!(largest < 0.1 + growth, "{largest}, {growth}");
 }

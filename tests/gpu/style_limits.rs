@@ -18,9 +18,9 @@ fn every_look_keeps_its_limits() {
     keep_their_limits(BuiltIn::Figure, presets::STYLES);
 }
 
-/// One scene, smaller and with fewer frames than the page; `pictures gallery` measures three scenes, and the
-/// distances of looks. It alone counts fragments: their limit is of the mean over the scenes, and looks
-/// with broken lines have more on one of them.
+/// One scene, smaller and with fewer frames than the page; `pictures gallery` measures three
+/// scenes, and the distances of looks. It alone counts fragments: their limit is of the mean over
+/// the scenes, and looks with broken lines have more on one of them.
 fn keep_their_limits(scene: BuiltIn, looks: &[Preset]) {
     let mut bench = LookBench::new(scene, UVec2::new(160, 90), 3);
     bench.count_fragments = false;

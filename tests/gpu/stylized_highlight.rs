@@ -102,8 +102,8 @@ fn covered(picture: &RgbaImage) -> (f64, DVec2) {
     summed(&covers(picture))
 }
 
-/// How much of every pixel the sign covers by the ball's geometry at four times the size. `half` is the
-/// half vector.
+/// How much of every pixel the sign covers by the ball's geometry at four times the size. `half` is
+/// the half vector.
 fn true_covers(sign: &StylizedHighlight, half: DVec3) -> Vec<f64> {
     let radius = stylized_highlight_radius(EDGE.into(), ROUGHNESS.into());
     let is_covered = |at: DVec2| {
@@ -149,8 +149,8 @@ fn check_cover(signs: &[StylizedHighlight]) {
         );
         let away = middle.distance(centre);
         assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
-        // The 16 parts of a pixel tell its cover to an eighth, and a slanted edge is off by 0.05. Only
-        // where edges meet in a pixel is it off by more.
+        // The 16 parts of a pixel tell its cover to an eighth, and a slanted edge is off by 0.05.
+        // Only where edges meet in a pixel is it off by more.
         let pairs = found.iter().zip(&wanted);
         let off = pairs
             .filter(|(found, wanted)| (*found - *wanted).abs() > 0.4)
@@ -223,8 +223,8 @@ fn discs_are_the_plain_highlight_at_every_roughness() {
     check_roughness(&[0.0, 0.1, 0.2, 0.35, 0.5, 0.6]);
 }
 
-/// Checks that the disc of the sign is the plain highlight. From a roughness of 0.65 on, its peak is below
-/// a few codes and cannot be measured.
+/// Checks that the disc of the sign is the plain highlight. From a roughness of 0.65 on, its peak
+/// is below a few codes and cannot be measured.
 fn check_roughness(all: &[f32]) {
     let mut small = ball(&signed(StylizedHighlight::default()));
     for roughness in all.iter().copied() {
@@ -302,8 +302,8 @@ fn signs_are_anti_aliased() {
     );
 }
 
-/// A light turns by 80 degrees in 360 frames. The sign moves smoothly, and is where the geometry says at
-/// every 90th. A sign that stood still for a frame would bend its way by 0.2 pixels.
+/// A light turns by 80 degrees in 360 frames. The sign moves smoothly, and is where the geometry
+/// says at every 90th. A sign that stood still for a frame would bend its way by 0.2 pixels.
 #[test]
 #[ignore = "long: 361 frames of a moving light"]
 fn signs_move_smoothly_with_the_light() {
@@ -345,7 +345,8 @@ fn signs_move_smoothly_with_the_light() {
     assert!(middles[0].distance(middles[360]) > 60.0);
 }
 
-/// Only the brightest light draws a sign; of two that are equal, none does, and between, a part of it.
+/// Only the brightest light draws a sign; of two that are equal, none does, and between, a part of
+/// it.
 #[test]
 fn the_brightest_light_draws_the_sign() {
     // A ring around the plain highlight.
@@ -507,8 +508,8 @@ fn rims_are_as_wide_as_they_say() {
 }
 
 /// Truth: the inner border of a rim of constant width is a straight line along a pillar that leans,
-/// where it should be. The border of the depth has the steps of pixels, or of their samples: half of
-/// a pixel, or of the half pixel that four samples are apart at most.
+/// where it should be. The border of the depth has the steps of pixels, or of their samples: half
+/// of a pixel, or of the half pixel that four samples are apart at most.
 #[test]
 fn rims_of_constant_width_have_straight_borders() {
     let pixels = 8.0f64;

@@ -39,8 +39,8 @@ fn step() -> Vec<f32> {
     (0..16).map(|k| if k < 8 { 0.125 } else { 0.625 }).collect()
 }
 
-/// No ramp, and one of black and white from a quarter of the light on, in each mode; with where light
-/// begins.
+/// No ramp, and one of black and white from a quarter of the light on, in each mode; with where
+/// light begins.
 fn lights() -> Vec<(ToonLight, f64)> {
     let plain = ToonLight::default();
     let begins = f64::from(plain.shadow_threshold);
@@ -57,8 +57,8 @@ fn lights() -> Vec<(ToonLight, f64)> {
     [(plain, begins)].into_iter().chain(ramps).collect()
 }
 
-/// A wall of 40 units, of which the view shows 20, with coordinates from 0 to 1 over its middle half, and
-/// with the alpha of its vertices by where they are.
+/// A wall of 40 units, of which the view shows 20, with coordinates from 0 to 1 over its middle
+/// half, and with the alpha of its vertices by where they are.
 fn wall(alpha: impl Fn(f32) -> f32) -> Mesh {
     let mut wall = Plane3d::new(Vec3::Z, Vec2::splat(20.0)).mesh().build();
     let places = wall.attribute(Mesh::ATTRIBUTE_POSITION).expect("places");
@@ -72,7 +72,8 @@ fn wall(alpha: impl Fn(f32) -> f32) -> Mesh {
     wall
 }
 
-/// A wall under a sun, with coordinates from 0 at the left border of the picture to 1 at the right one.
+/// A wall under a sun, with coordinates from 0 at the left border of the picture to 1 at the right
+/// one.
 fn lit_wall(mesh: Mesh) -> (Small, Entity) {
     let mut small = room(SIZE, 0.0);
     let entity = put(&mut small, mesh, &ToonLight::default(), default());
@@ -102,8 +103,8 @@ fn white(small: &mut Small) -> (f64, usize) {
     (row.iter().sum(), between)
 }
 
-/// Over 16 shifts by parts of a pixel, the edge lies where the threshold says, and its pixels are covered
-/// by as much in the mean.
+/// Over 16 shifts by parts of a pixel, the edge lies where the threshold says, and its pixels are
+/// covered by as much in the mean.
 fn check_edge(small: &mut Small, wall: Entity, edge: f64, what: &str) {
     let per_unit = f64::from(SIZE.x) / 20.0;
     let (mut error, mut soft) = (0.0, 0);
@@ -113,8 +114,8 @@ fn check_edge(small: &mut Small, wall: Entity, edge: f64, what: &str) {
         small.world().entity_mut(wall).insert(at);
         let (found, between) = white(small);
         let wanted = f64::from(SIZE.x) - edge - moved;
-        // A smooth step instead of the area of a pixel: off by up to 0.1. A hard edge would be off by
-        // up to 0.5. The places of samplers are 1/256 of a texel, which is 10 pixels at most.
+        // A smooth step instead of the area of a pixel: off by up to 0.1. A hard edge would be off
+        // by up to 0.5. The places of samplers are 1/256 of a texel, which is 10 pixels at most.
         let off = found - wanted;
         assert!(off.abs() < 0.15, "{what}, {moved}: {found}, not {wanted}");
         error += off / 16.0;

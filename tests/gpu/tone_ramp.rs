@@ -111,8 +111,8 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     reds().max().expect("pixels") - reds().min().expect("pixels")
 }
 
-/// The dither of a flat area speckles at a hard edge, which is why cameras switch it off; without it,
-/// or at a soft edge, the area is flat.
+/// The dither of a flat area speckles at a hard edge, which is why cameras switch it off; without
+/// it, or at a soft edge, the area is flat.
 #[test]
 fn flat_areas_at_an_edge_have_no_speckles() {
     let hard = ToneRamp {

@@ -388,7 +388,8 @@ fn a_scene_is_converted_with_one_component_and_back() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Toon meshes are drawn forward on a deferred camera, beside meshes that are not: the same picture.
+/// Toon meshes are drawn forward on a deferred camera, beside meshes that are not: the same
+/// picture.
 #[test]
 fn a_deferred_camera_draws_the_same_toon() {
     let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));

@@ -233,8 +233,8 @@ fn normal_map(small: &mut Small) -> Handle<Image> {
     small.world().resource_mut::<Assets<Image>>().add(image)
 }
 
-/// Checks that under an environment alone, materials and meshes are drawn as the standard material draws
-/// them: those of which `is_checked` says so, by name and fog.
+/// Checks that under an environment alone, materials and meshes are drawn as the standard material
+/// draws them: those of which `is_checked` says so, by name and fog.
 fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
     let mut small = dark();
     let map = normal_map(&mut small);

@@ -345,8 +345,8 @@ fn a_scene_has_a_shading_and_others_by_the_names_of_its_materials() {
     assert_eq!(small.errors(), 0);
 }
 
-/// A mesh that code made and named has its shading from the first frame on that the shading is there,
-/// and meshes with the same material and shading share one copy.
+/// A mesh that code made and named has its shading from the first frame on that the shading is
+/// there, and meshes with the same material and shading share one copy.
 #[test]
 fn meshes_made_by_code_have_shadings_by_name_too() {
     let mut small = Small::new(size(), Msaa::Off);

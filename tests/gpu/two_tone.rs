@@ -8,8 +8,8 @@ use crate::{
     walls::{towards_the_sky, wall},
 };
 
-/// Truth: flat areas are of one tone or the other, on the side of the threshold that their lightness
-/// is on.
+/// Truth: flat areas are of one tone or the other, on the side of the threshold that their
+/// lightness is on.
 #[test]
 fn every_pixel_matches_the_reference() {
     let mut small = Small::new(size(), Msaa::Off);

@@ -71,7 +71,8 @@ fn of<E: Effect>(effect: E) -> ComicStyle {
     ComicStyle::new().with(effect)
 }
 
-/// A small box in front of a large one, before the sky: left, top, right, bottom in pixels, and the distance.
+/// A small box in front of a large one, before the sky: left, top, right, bottom in pixels, and the
+/// distance.
 const BOXES: [([f32; 4], f32); 2] = [
     ([50.3, 40.8, 190.7, 139.4], 60.0),
     ([90.6, 60.2, 140.9, 110.55], 5.0),
@@ -298,8 +299,8 @@ fn a_grazing_plane_has_lines_at_its_horizon_alone() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The paper's contours include slopes, and its outlines compare 5 x 5 neighbours, between which a slope
-/// would be a staircase: both are those of a view of the main pass's size.
+/// The paper's contours include slopes, and its outlines compare 5 x 5 neighbours, between which a
+/// slope would be a staircase: both are those of a view of the main pass's size.
 #[test]
 fn faithful_lines_are_those_of_a_view_of_the_main_passs_size() {
     let contours = |width| {

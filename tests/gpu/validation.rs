@@ -1,5 +1,5 @@
-//! Vulkan's validation layer. `scripts/validate` runs all tests under it: every app checks after each
-//! frame and at its end that it has said nothing, the bare device whenever something is read.
+//! Vulkan's validation layer. `scripts/validate` runs all tests under it: every app checks after
+//! each frame and at its end that it has said nothing, the bare device whenever something is read.
 
 use std::panic::catch_unwind;
 
@@ -9,13 +9,14 @@ use crate::prelude::*;
 
 /// The only test of this file, by its whole name.
 const TEST: &str = "validation::the_layer_is_active_where_it_is_wanted";
-/// Set in the process in which the layer is made to speak: here, a test beside would find the message.
+/// Set in the process in which the layer is made to speak: here, a test beside would find the
+/// message.
 const SPEAKS: &str = "VALIDATION_SPEAKS";
 /// Precedes the text of the failed check.
 const ARRIVED: &str = "the check failed with";
 
-/// Writes a sample mask: naga 29 translates it to SPIR-V that is not valid (wgpu 7311). Where that is
-/// mended, this needs another fault that wgpu does not see.
+/// Writes a sample mask: naga 29 translates it to SPIR-V that is not valid (wgpu 7311). Where that
+/// is mended, this needs another fault that wgpu does not see.
 const SAMPLE_MASK: &str = "
     @vertex fn vertex() -> @builtin(position) vec4<f32> { return vec4(0.0); }
     @fragment fn fragment() -> @builtin(sample_mask) u32 { return 1u; }

@@ -91,8 +91,8 @@ fn projections(scale: f32) -> [(&'static str, Projection); 4] {
     ]
 }
 
-/// Truth: detail is the formula in distances, whatever the projection and the unit of the world. Both
-/// ends are exact, and what is farther away never has more of it.
+/// Truth: detail is the formula in distances, whatever the projection and the unit of the world.
+/// Both ends are exact, and what is farther away never has more of it.
 #[test]
 fn detail_spans_the_visible_range_under_every_projection() {
     assert_detail_spans(&[1.0], &[2.0, 4.0, 24.0, 50.0]);
@@ -192,7 +192,8 @@ fn a_locked_range_is_kept() {
     detail(&mut small, wanted(8.0, 2.0, 512.0));
 }
 
-/// There is all detail without a component that asks for depth, and where nothing has written depth.
+/// There is all detail without a component that asks for depth, and where nothing has written
+/// depth.
 #[test]
 fn without_a_range_there_is_all_detail() {
     let mut small = hall(projections(1.0)[0].1.clone());

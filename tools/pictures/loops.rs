@@ -106,7 +106,8 @@ fn lines() -> Vec<RgbaImage> {
     frames.collect()
 }
 
-/// An animated PNG of `colors` colours. A frame has only the pixels that differ from the one before.
+/// An animated PNG of `colors` colours. A frame has only the pixels that differ from the one
+/// before.
 fn save(frames: &[RgbaImage], colors: usize, path: &Path) -> Result<(), String> {
     let palette = Palette::of(frames, colors);
     let written = encode(frames, &palette, path);

@@ -52,8 +52,8 @@ fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
 /// Pictures in a row of the sheet of styles.
 const COLUMNS: usize = 6;
 
-/// Every style of the gallery in the scene that shows it best, in the gallery's order. Says after each
-/// picture how long the others will take.
+/// Every style of the gallery in the scene that shows it best, in the gallery's order. Says after
+/// each picture how long the others will take.
 pub fn styles(size: UVec2, out: &Path) -> Result<(), String> {
     let started = Instant::now();
     let count = presets::STYLES.len();

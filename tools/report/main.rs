@@ -104,8 +104,9 @@ impl Run {
             .map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Measures sections, one after another. A quick run, whose times count for nothing, measures as many at
-    /// once as there are cores. The first failure ends the run; the error names its section.
+    /// Measures sections, one after another. A quick run, whose times count for nothing, measures
+    /// as many at once as there are cores. The first failure ends the run; the error names its
+    /// section.
     fn measure_all(&self, sections: Vec<&Section>) -> Result<(), String> {
         let queue = Mutex::new(sections.into_iter());
         let record = Mutex::new(());

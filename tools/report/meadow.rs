@@ -42,8 +42,8 @@ fn is_faithful(lines: &Outlines) -> bool {
     [silhouettes, creases].contains(&Some(Equations::Faithful))
 }
 
-/// The fractions of the meadow's areas that black lines on white cover: the meadow is the lower 5/12
-/// of the picture.
+/// The fractions of the meadow's areas that black lines on white cover: the meadow is the lower
+/// 5/12 of the picture.
 fn covered(picture: &RgbaImage) -> Vec<f64> {
     let (width, height) = picture.dimensions();
     let first = height * 7 / 12;

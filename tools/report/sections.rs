@@ -14,7 +14,8 @@ pub struct Section {
     pub question: &'static str,
     /// The heading of the text that has the answer.
     pub heading: &'static str,
-    /// Whether it runs only where `--only` names it: it is long, and gives no accuracy and no times.
+    /// Whether it runs only where `--only` names it: it is long, and gives no accuracy and no
+    /// times.
     pub is_alone: bool,
 }
 

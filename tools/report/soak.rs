@@ -1,4 +1,5 @@
-//! The long run: 100,000 frames in which everything changes. It runs where `--only soak` asks for it.
+//! The long run: 100,000 frames in which everything changes. It runs where `--only soak` asks for
+//! it.
 
 use bevy_comics_testkit::soak::{CYCLE, Changes, Sample, Soak, WARM_UP};
 
@@ -15,7 +16,8 @@ pub const MOST_GROWTH: f64 = 2.0;
 /// Columns before those of the resources of the GPU.
 pub const FIRST_RESOURCE: usize = 4;
 
-/// Writes `soak.csv`. An error if memory or resources have grown, or the renderer has reported an error.
+/// Writes `soak.csv`. An error if memory or resources have grown, or the renderer has reported an
+/// error.
 pub fn measure(run: &Run) -> Result<(), String> {
     let folder = std::env::temp_dir().join(format!("bevy_comics_soak_{}", std::process::id()));
     let problem = |error| format!("{}: {error}", folder.display());
@@ -100,7 +102,8 @@ pub fn ends(numbers: &[f64]) -> Option<[f64; 2]> {
     })
 }
 
-/// Memory of the process in MiB after each cycle since the warm-up. Empty where the system does not say.
+/// Memory of the process in MiB after each cycle since the warm-up. Empty where the system does not
+/// say.
 pub fn resident(table: &Table) -> Vec<f64> {
     let rows = settled(table).iter();
     let kib = rows.map(|row| table.number(row, "resident KiB"));
@@ -116,8 +119,8 @@ pub fn growth(table: &Table) -> Option<f64> {
     Some(100.0 * (last / first - 1.0))
 }
 
-/// How much of a column there was at most in the first cycles after the warm-up, and in the last ones: one of
-/// each kind.
+/// How much of a column there was at most in the first cycles after the warm-up, and in the last
+/// ones: one of each kind.
 pub fn counts(table: &Table, name: &str) -> [f64; 2] {
     let rows = settled(table).iter();
     let numbers: Vec<f64> = rows.map(|row| table.number(row, name)).collect();

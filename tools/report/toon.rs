@@ -1,6 +1,7 @@
-//! What the toon material costs beside the standard material: the main pass of one scene, with
-//! all meshes in one material after the other. A depth prepass lets each pixel be shaded once; without
-//! it, the order of draws, which is another one for every material, decides how many are shaded twice.
+//! What the toon material costs beside the standard material: the main pass of one scene, with all
+//! meshes in one material after the other. A depth prepass lets each pixel be shaded once; without
+//! it, the order of draws, which is another one for every material, decides how many are shaded
+//! twice.
 
 use bevy::{
     asset::RenderAssetUsages,

@@ -147,7 +147,8 @@ mod tests {
     use super::*;
     use crate::fuzz::{Numbers, cases, in_time};
 
-    /// Whatever the file has become, the size of screenshots and all other numbers are in their ranges.
+    /// Whatever the file has become, the size of screenshots and all other numbers are in their
+    /// ranges.
     #[test]
     fn parsing_stored_settings_never_panics() {
         const WORDS: [&str; 12] = [

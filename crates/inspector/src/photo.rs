@@ -308,8 +308,8 @@ mod tests {
         }
     }
 
-    /// A screenshot of a window that the adapter can draw is one that it can draw, too; whatever the numbers
-    /// are, there is a size.
+    /// A screenshot of a window that the adapter can draw is one that it can draw, too; whatever
+    /// the numbers are, there is a size.
     #[test]
     fn a_window_of_any_size_is_drawn() {
         let mut numbers = Numbers::new(4);

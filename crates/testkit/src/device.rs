@@ -78,8 +78,8 @@ impl Gpu {
         buffer
     }
 
-    /// The bytes of a buffer, after all that was submitted. Panics if Vulkan's validation layer has said
-    /// anything.
+    /// The bytes of a buffer, after all that was submitted. Panics if Vulkan's validation layer has
+    /// said anything.
     pub fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -114,7 +114,8 @@ impl Gpu {
         self.run(module.unwrap_or_else(|error| panic!("{error}")), rows, &[])
     }
 
-    /// As [`evaluate`](Self::evaluate), for functions of a texture: `imports` declares it as binding 2.
+    /// As [`evaluate`](Self::evaluate), for functions of a texture: `imports` declares it as
+    /// binding 2.
     pub fn evaluate_texture<const N: usize>(
         &self,
         texture: &wgpu::TextureView,

@@ -1,8 +1,9 @@
 //! What shadow maps and the object service import of the engine, for their functions in isolation
 //! ([`wgsl::module_alone`](crate::wgsl::module_alone)).
 //!
-//! What the engine binds are private variables, which tests set. Only the shadow maps of directional
-//! lights are textures, see [`Gpu::evaluate_shadows`](crate::device::Gpu::evaluate_shadows).
+//! What the engine binds are private variables, which tests set. Only the shadow maps of
+//! directional lights are textures, see
+//! [`Gpu::evaluate_shadows`](crate::device::Gpu::evaluate_shadows).
 
 /// Modules by name.
 pub const MODULES: [(&str, &str); 7] = [

@@ -18,8 +18,8 @@ thread_local! {
     static BYTES: Cell<(isize, isize)> = const { Cell::new((0, 0)) };
 }
 
-/// The system's allocator, which counts the bytes of every thread. A binary that calls [`check`] needs it
-/// as its `#[global_allocator]`.
+/// The system's allocator, which counts the bytes of every thread. A binary that calls [`check`]
+/// needs it as its `#[global_allocator]`.
 pub struct Counting;
 
 fn count(bytes: isize) {
@@ -64,8 +64,8 @@ pub fn cases() -> usize {
     given.and_then(|text| text.parse().ok()).unwrap_or(2000)
 }
 
-/// The bytes that reading a text may take at most, as `docs/style-format.md` states: a mebibyte, and 256 for
-/// each of its own.
+/// The bytes that reading a text may take at most, as `docs/style-format.md` states: a mebibyte,
+/// and 256 for each of its own.
 fn most_bytes(text: &str) -> usize {
     (1 << 20) + 256 * text.len()
 }
@@ -81,7 +81,8 @@ impl Drop for Shown<'_> {
     }
 }
 
-/// Runs `read` on a text. Panics if it panics, takes longer than a second, or allocates more than stated.
+/// Runs `read` on a text. Panics if it panics, takes longer than a second, or allocates more than
+/// stated.
 pub fn check(text: &str, read: impl FnOnce(&str)) {
     let _shown = Shown(text);
     let before = BYTES.get().0;
@@ -95,11 +96,12 @@ pub fn check(text: &str, read: impl FnOnce(&str)) {
     assert!(bytes <= most as isize, "{bytes} bytes, {most} are allowed");
 }
 
-/// Changes command lines and reads them. Each must be read, or refused with a message, within the limits of
+/// Changes command lines and reads them. Each must be read, or refused with a message, within the
+/// limits of
 /// [`check`]. More than one in twenty must be read, and as many refused, so that both paths are tested.
 ///
-/// `right` has correct command lines, with an argument on each line. `read` returns `None` where only help is
-/// asked for. `assert_usable` panics if what was read is outside its ranges.
+/// `right` has correct command lines, with an argument on each line. `read` returns `None` where
+/// only help is asked for. `assert_usable` panics if what was read is outside its ranges.
 pub fn check_command_lines<T>(
     seed: u64,
     right: &[&str],

@@ -59,8 +59,8 @@ pub struct HeadlessOptions {
     /// Whether pipelines compile while frames are drawn, as in a game; else every
     /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
-    /// Whether systems run on several threads, as in a game. Default: one after another, because with
-    /// small pictures up to half of a frame goes into waking threads.
+    /// Whether systems run on several threads, as in a game. Default: one after another, because
+    /// with small pictures up to half of a frame goes into waking threads.
     pub parallel_systems: bool,
     /// Limits of the device below those of the adapter.
     pub limits: Option<wgpu::Limits>,
@@ -338,8 +338,8 @@ impl Headless {
 }
 
 impl Drop for Headless {
-    /// Gives an app of a pool back. Ends any other, and checks what Vulkan's validation layer said since the
-    /// last frame, and while the app ended.
+    /// Gives an app of a pool back. Ends any other, and checks what Vulkan's validation layer said
+    /// since the last frame, and while the app ended.
     fn drop(&mut self) {
         pool::give_back(self);
         drop(std::mem::replace(&mut self.app, App::empty()));
@@ -349,8 +349,9 @@ impl Drop for Headless {
     }
 }
 
-/// Whether a pipeline can ever compile. On devices with few storage buffers, the engine's pipeline that
-/// updates buffers in part has no shader (Bevy 0.19.1), and a wait for it would take [`LOADING`] each frame.
+/// Whether a pipeline can ever compile. On devices with few storage buffers, the engine's pipeline
+/// that updates buffers in part has no shader (Bevy 0.19.1), and a wait for it would take
+/// [`LOADING`] each frame.
 fn has_shader(pipeline: &PipelineDescriptor) -> bool {
     match pipeline {
         PipelineDescriptor::ComputePipelineDescriptor(compute) => {

@@ -237,7 +237,8 @@ fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f
     [mean(|number| number & 0xffff), mean(|number| number >> 16)]
 }
 
-/// Texels per pixel that the pass that finds cracks in cells fetches in a style, in an app of its own.
+/// Texels per pixel that the pass that finds cracks in cells fetches in a style, in an app of its
+/// own.
 pub fn count_find(style: &ComicStyle) -> f64 {
     count_pass(&mut None, style, CELLS)[0]
 }

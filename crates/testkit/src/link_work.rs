@@ -120,8 +120,8 @@ fn ran(studio: &Studio, name: &str) -> bool {
     pipelines.any(|pipeline| label(&pipeline.descriptor) == name)
 }
 
-/// Counts what completing the cracks of a style loads, on the teapot at 160 x 90 pixels. It draws it once
-/// more if lines are continued, so the work of styles is counted without it.
+/// Counts what completing the cracks of a style loads, on the teapot at 160 x 90 pixels. It draws
+/// it once more if lines are continued, so the work of styles is counted without it.
 pub fn count(style: &ComicStyle) -> LinkWork {
     let counted = |file: &str| {
         let mut studio = edited_teapot(|path, text| completing(file, path, text));

@@ -1,5 +1,5 @@
-//! How well paint and focus keep to what they paint. Computed with the shaders' references, which every
-//! pixel of a picture equals.
+//! How well paint and focus keep to what they paint. Computed with the shaders' references, which
+//! every pixel of a picture equals.
 
 use bevy_comics::{
     Focus, Paint,

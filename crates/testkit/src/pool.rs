@@ -1,9 +1,11 @@
-//! Apps that tests use one after another. A new app compiles every pipeline again, about a second on a CPU.
+//! Apps that tests use one after another. A new app compiles every pipeline again, about a second
+//! on a CPU.
 //!
-//! What a test spawned is removed after it, and resources that tests commonly replace are set back. An app that
-//! a test changed otherwise is not used again: one with another number of systems, or in whose main world other
-//! resources were added or changed than those that change in every frame. Not seen: assets that are changed in
-//! place, and what the renderer keeps for as long as the app runs. Tests of those need an app of their own.
+//! What a test spawned is removed after it, and resources that tests commonly replace are set back.
+//! An app that a test changed otherwise is not used again: one with another number of systems, or
+//! in whose main world other resources were added or changed than those that change in every frame.
+//! Not seen: assets that are changed in place, and what the renderer keeps for as long as the app
+//! runs. Tests of those need an app of their own.
 
 use std::{
     collections::HashMap,
@@ -48,8 +50,8 @@ impl Pool {
         Self { new, draw, idle }
     }
 
-    /// An app that a test gave back, else a new one. With other options than the default ones, always a new
-    /// one, which is not given back.
+    /// An app that a test gave back, else a new one. With other options than the default ones,
+    /// always a new one, which is not given back.
     pub fn take(&'static self, options: HeadlessOptions) -> Headless {
         let usual = HeadlessOptions {
             size: options.size,
@@ -113,8 +115,8 @@ pub(crate) fn give_back(headless: &mut Headless) {
 /// The state of an app before each test.
 pub(crate) struct Baseline {
     entities: Vec<Entity>,
-    /// The tick of the last change of each resource of the main world; `None` for those that frames change,
-    /// those that [`restore`] sets, and those that go with the scene.
+    /// The tick of the last change of each resource of the main world; `None` for those that frames
+    /// change, those that [`restore`] sets, and those that go with the scene.
     resources: HashMap<ComponentId, Option<u32>>,
     /// How many systems the game and the renderer have.
     systems: [usize; 2],
@@ -157,8 +159,8 @@ impl Baseline {
     }
 }
 
-/// Removes what a test spawned, and draws until the renderer has forgotten it: the engine keeps textures
-/// for three frames.
+/// Removes what a test spawned, and draws until the renderer has forgotten it: the engine keeps
+/// textures for three frames.
 fn remove_spawned(headless: &mut Headless, baseline: &Baseline) {
     let world = headless.app.world_mut();
     for entity in entities(world) {

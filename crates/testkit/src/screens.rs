@@ -1,5 +1,5 @@
-//! How well screens print flat tones, gradients and rings. Computed with the shader's reference, which
-//! every pixel of a picture equals.
+//! How well screens print flat tones, gradients and rings. Computed with the shader's reference,
+//! which every pixel of a picture equals.
 
 use std::{f64::consts::TAU, sync::OnceLock};
 
@@ -125,8 +125,8 @@ pub fn largest_jump(shape: ScreenShape, period: f64) -> (f64, f64) {
 /// Side of the pictures whose prints are searched for slow parts.
 const SIDE: usize = 240;
 
-/// The tone of a picture at a place from its middle, as it is stored: in 8 bits. A slow gradient, or
-/// rings that become finer towards the border (`zones`).
+/// The tone of a picture at a place from its middle, as it is stored: in 8 bits. A slow gradient,
+/// or rings that become finer towards the border (`zones`).
 fn picture_tone([x, y]: [f64; 2], period: f64, zones: bool) -> f64 {
     let tone = if zones {
         // At the border: a period of 12 cells.

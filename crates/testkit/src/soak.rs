@@ -33,12 +33,13 @@ pub const WARM_UP: u64 = Pace::LONG.kinds.len() as u64;
 /// How fast things change.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// A frame of this run stands for so many of the long run: 1, 2 or 4, which divide the times of all
-    /// changes; or 20, with which fewer sizes and objects come.
+    /// A frame of this run stands for so many of the long run: 1, 2 or 4, which divide the times of
+    /// all changes; or 20, with which fewer sizes and objects come.
     pub frames: u64,
     /// Frames of the long run until the next style.
     pub style: u64,
-    /// The kinds of the first camera, one for each cycle in turn: 1 for multisampled, plus 2 for HDR.
+    /// The kinds of the first camera, one for each cycle in turn: 1 for multisampled, plus 2 for
+    /// HDR.
     pub kinds: &'static [u64],
 }
 
@@ -207,7 +208,8 @@ impl Soak {
         Ok(self.sample())
     }
 
-    /// What changes before a frame of a cycle, of which the number and the kind of the camera are given.
+    /// What changes before a frame of a cycle, of which the number and the kind of the camera are
+    /// given.
     fn change(&mut self, (number, kind): (u64, u64), at: u64) -> io::Result<()> {
         let changes = self.changes;
         if changes.sizes && at.is_multiple_of(12) {
@@ -377,8 +379,8 @@ fn spawn_scene(world: &mut World) -> Entity {
     root
 }
 
-/// Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each
-/// camera, six with a prepass. Without them, what grows is this crate's.
+/// Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for
+/// each camera, six with a prepass. Without them, what grows is this crate's.
 fn forget_gone_views(
     mut groups: ResMut<BinUnpackingBindGroups>,
     buffers: Res<BinUnpackingBuffers>,

@@ -33,10 +33,10 @@ pub fn offsets() -> [f64; 16] {
     std::array::from_fn(|n| (0.13 + n as f64 * golden).fract())
 }
 
-/// The largest root mean square of the distance from an edge that is accepted: a tenth above what is
-/// aimed at. Between the slopes for which that is stated, it is interpolated, but an edge of a
-/// slope of at most 1/2 is not known better than by one run of cracks: these are the same while
-/// the edge moves by `slope` pixels. At slope 1, they are the same while it moves by sqrt(1/2).
+/// The largest root mean square of the distance from an edge that is accepted: a tenth above what
+/// is aimed at. Between the slopes for which that is stated, it is interpolated, but an edge of a
+/// slope of at most 1/2 is not known better than by one run of cracks: these are the same while the
+/// edge moves by `slope` pixels. At slope 1, they are the same while it moves by sqrt(1/2).
 pub fn accepted(slope: f64) -> f64 {
     let run = if slope <= 0.5 { uniform(slope) } else { 0.0 };
     let last = (1.0, uniform(0.5f64.sqrt()));

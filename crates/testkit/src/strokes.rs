@@ -10,8 +10,8 @@ use crate::reference::{
     hatching::{Hatch, Surface},
 };
 
-/// A part of a wall that is turned by an angle about the vertical axis, in an orthographic view whose
-/// pixels are `unit` wide, at a place in pixels.
+/// A part of a wall that is turned by an angle about the vertical axis, in an orthographic view
+/// whose pixels are `unit` wide, at a place in pixels.
 fn wall(angle: f64, unit: f64, [x, y]: [f64; 2]) -> Surface {
     let (sin, cos) = angle.sin_cos();
     let [across, down] = [DVec3::new(unit, 0.0, unit * sin / cos), -unit * DVec3::Y];
@@ -23,9 +23,9 @@ fn wall(angle: f64, unit: f64, [x, y]: [f64; 2]) -> Surface {
     }
 }
 
-/// The largest difference of the mean darkness of a wall from the one that is asked for: twenty tones,
-/// nine angles up to 80 degrees, and 32 zooms over an octave. `random`: of breaks and wobble, and
-/// twice the pressure.
+/// The largest difference of the mean darkness of a wall from the one that is asked for: twenty
+/// tones, nine angles up to 80 degrees, and 32 zooms over an octave. `random`: of breaks and
+/// wobble, and twice the pressure.
 pub fn mean_tone_error(marks: HatchingMarks, random: f32, samples: u32) -> f64 {
     let settings = Hatching {
         marks,
@@ -93,8 +93,8 @@ fn window_mean(cover: impl Fn([f64; 2]) -> f64, samples: u32) -> f64 {
     sum / all
 }
 
-/// The largest change of a tone, in parts of the widest band, while the dial of abstraction turns by
-/// a two-hundredth: 2 to 8 bands that split up to three times.
+/// The largest change of a tone, in parts of the widest band, while the dial of abstraction turns
+/// by a two-hundredth: 2 to 8 bands that split up to three times.
 pub fn largest_tone_step() -> f64 {
     let mut largest = 0.0f64;
     for levels in 2..=8 {

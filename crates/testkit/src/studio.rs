@@ -36,7 +36,8 @@ pub struct Studio {
 }
 
 /// The entities of a scene come after this index. How many an app has before them changes with the
-/// plugins and resources of the engine and this crate, and the pressure of lines is random by entity.
+/// plugins and resources of the engine and this crate, and the pressure of lines is random by
+/// entity.
 const FIRST_OF_SCENE: u32 = 1024;
 
 fn reserve_entities(world: &mut World) {
@@ -105,8 +106,8 @@ impl Studio {
     }
 }
 
-/// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither, which
-/// would speckle flat areas whose tone lies at a step between two bands.
+/// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither,
+/// which would speckle flat areas whose tone lies at a step between two bands.
 pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
     let divides = style.get::<ToneBands>().is_some()
         || style.get::<ToneRamp>().is_some()
@@ -125,7 +126,8 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The names of the presets with a golden picture in a scene: each is in the scene that suits it best.
+/// The names of the presets with a golden picture in a scene: each is in the scene that suits it
+/// best.
 fn golden_presets(scene: BuiltIn) -> &'static str {
     match scene {
         BuiltIn::Mountains => "twilight-toon crimson-dusk emerald-ink watercolor",
@@ -157,8 +159,8 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     presets.chain(single_effects(scene)).collect()
 }
 
-/// When the golden picture of a style is drawn, in the app's time: some styles are drawn anew some times
-/// a second.
+/// When the golden picture of a style is drawn, in the app's time: some styles are drawn anew some
+/// times a second.
 fn golden_time(name: &str) -> Duration {
     Duration::from_millis(match name {
         "silent-film" => 834,

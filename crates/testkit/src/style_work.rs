@@ -208,7 +208,8 @@ fn lab(code: &[u8; 4]) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// The mean difference in CIELAB between the mean colours of near and middle, and of middle and far.
+/// The mean difference in CIELAB between the mean colours of near and middle, and of middle and
+/// far.
 fn contrast(picture: &RgbaImage, planes: &[Option<u8>]) -> f64 {
     let mut sums = [[0.0; 4]; 3];
     for (pixel, plane) in picture.pixels().zip(planes) {
@@ -227,8 +228,9 @@ fn contrast(picture: &RgbaImage, planes: &[Option<u8>]) -> f64 {
     0.5 * (apart(means[0], means[1]) + apart(means[1], means[2]))
 }
 
-/// How far pixels jump and jump back from frame to frame, in codes: the mean over pixels and over all
-/// three successive frames, of the channel that jumps most. An edge that moves on does not count.
+/// How far pixels jump and jump back from frame to frame, in codes: the mean over pixels and over
+/// all three successive frames, of the channel that jumps most. An edge that moves on does not
+/// count.
 fn flicker(frames: &[RgbaImage]) -> f64 {
     let (mut sum, mut count) = (0u64, 0u64);
     for three in frames.windows(3) {
@@ -252,8 +254,8 @@ fn flicker(frames: &[RgbaImage]) -> f64 {
     sum as f64 / count.max(1) as f64
 }
 
-/// The part of the pixels of lines that are in pieces of fewer than eight pixels. Lines are where the
-/// picture without outlines differs.
+/// The part of the pixels of lines that are in pieces of fewer than eight pixels. Lines are where
+/// the picture without outlines differs.
 fn fragments(with: &RgbaImage, without: &RgbaImage) -> f64 {
     let differs =
         |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|i| a[i].abs_diff(b[i]) > LINE);

@@ -1,5 +1,5 @@
-//! Vulkan's validation layer: on where the variable `VULKAN_VALIDATION` is set, as `scripts/validate`
-//! does. On Debian it is in the package `vulkan-validationlayers`.
+//! Vulkan's validation layer: on where the variable `VULKAN_VALIDATION` is set, as
+//! `scripts/validate` does. On Debian it is in the package `vulkan-validationlayers`.
 
 use std::{
     sync::{Mutex, Once},
@@ -17,9 +17,10 @@ fn this_thread() -> String {
 /// Keeps warnings and errors of the driver, with the thread that called it.
 struct Keeper;
 
-/// Whether a message says that something is wrong. Advice on performance does not: shaders of vertices may
-/// compute what their fragments do not read. Nor do the names of objects, which follow a message on a line of
-/// their own, nor that layers older than 2023 do not know the number of WGSL in shaders compiled from a text.
+/// Whether a message says that something is wrong. Advice on performance does not: shaders of
+/// vertices may compute what their fragments do not read. Nor do the names of objects, which follow
+/// a message on a line of their own, nor that layers older than 2023 do not know the number of WGSL
+/// in shaders compiled from a text.
 fn is_fault(message: &str) -> bool {
     !message.starts_with("PERFORMANCE")
         && !message.starts_with('\t')
@@ -47,8 +48,8 @@ pub fn is_wanted() -> bool {
     std::env::var_os("VULKAN_VALIDATION").is_some()
 }
 
-/// The flags of an instance. Names of resources stay in wgpu: the Vulkan loader (1.3.239) looks for the
-/// device of a named resource in a list that another test may be changing.
+/// The flags of an instance. Names of resources stay in wgpu: the Vulkan loader (1.3.239) looks for
+/// the device of a named resource in a list that another test may be changing.
 pub fn instance_flags() -> wgpu::InstanceFlags {
     let flags =
         wgpu::InstanceFlags::DISCARD_HAL_LABELS | wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
@@ -75,8 +76,8 @@ pub fn is_loaded() -> Option<bool> {
     Some(maps.contains("VkLayer_khronos_validation"))
 }
 
-/// Panics with all messages if the layer has said anything, in whichever test of this process: the threads
-/// in the text tell which.
+/// Panics with all messages if the layer has said anything, in whichever test of this process: the
+/// threads in the text tell which.
 pub fn check() {
     let messages = messages();
     assert!(

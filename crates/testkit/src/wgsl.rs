@@ -172,8 +172,8 @@ pub fn check(text: &str) -> Result<(), String> {
         .map_err(|error| format!("{:?}", error.as_inner()))
 }
 
-/// Writes a composed shader into the folder that the variable `WGSL_OUT` names, if there is one, for
-/// `tools/translate`.
+/// Writes a composed shader into the folder that the variable `WGSL_OUT` names, if there is one,
+/// for `tools/translate`.
 fn keep(module: &wgpu::naga::Module, definitions: &[Definition]) {
     let Some(folder) = std::env::var_os("WGSL_OUT") else {
         return;

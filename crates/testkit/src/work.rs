@@ -335,8 +335,8 @@ impl WorkCounter {
     }
 }
 
-/// What a pass has written in place of the colours of a view: mean and maximum of the texels, and the mean of
-/// the bytes.
+/// What a pass has written in place of the colours of a view: mean and maximum of the texels, and
+/// the mean of the bytes.
 pub(crate) fn counted(render_world: &World, view: Entity) -> ([f64; 2], f64) {
     let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
     let pixels = counted.pixels.len() as f64;

@@ -120,8 +120,8 @@ fn app() -> App {
     app
 }
 
-/// Three flashes on a window, then the camera is `changed`: no other camera flashes there within the
-/// second.
+/// Three flashes on a window, then the camera is `changed`: no other camera flashes there within
+/// the second.
 fn assert_flashes_stay(changed: impl FnOnce(&mut App, Entity), case: &str) {
     let mut app = app();
     let first = app.world_mut().spawn(Camera::default()).id();

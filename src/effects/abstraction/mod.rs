@@ -29,16 +29,17 @@ pub struct Abstraction {
     /// Abstraction at the far end of the depth map. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub at_far: f32,
-    /// Exponent of the depth map on the way from `at_near` to `at_far`: above 1, more of the foreground
-    /// is as it is near. Range 0.25 to 4, default 1.
+    /// Exponent of the depth map on the way from `at_near` to `at_far`: above 1, more of the
+    /// foreground is as it is near. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes and
-    /// lines, or as its [`ObjectAbstraction`](crate::objects::ObjectAbstraction) says. Default:
+    /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes
+    /// and lines, or as its [`ObjectAbstraction`](crate::objects::ObjectAbstraction) says. Default:
     /// [`Granularity::Object`]. Without compute shaders, lines follow pixels.
     pub granularity: Granularity,
     /// How often the bands of [`ToneBands`](crate::ToneBands) split from full abstraction, where
-    /// there are `levels` of them, to none, with the corrected equations: at 1, there are twice as many. Range 0 to 3, default 1.
+    /// there are `levels` of them, to none, with the corrected equations: at 1, there are twice as
+    /// many. Range 0 to 3, default 1.
     #[reflect(@FieldRange::linear(0.0, 3.0))]
     pub band_splits: f32,
     /// Factor of [`Hatching::spacing`](crate::Hatching::spacing) at full abstraction. Range 1 to 4,

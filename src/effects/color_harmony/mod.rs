@@ -55,7 +55,8 @@ pub struct ColorHarmony {
     /// Fraction of the change that is applied. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Selects how colours go to their opposite. [`Equations::Corrected`] changes the chroma in `OKLab`.
+    /// Selects how colours go to their opposite. [`Equations::Corrected`] changes the chroma in
+    /// `OKLab`.
     /// [`Equations::Faithful`] turns the HSV hue by up to half a turn, as \[CS\] Eq. 9 to 11 do, and
     /// keeps value and saturation: `complement` is not used, [`HarmonyMode::Distance`] is as
     /// [`HarmonyMode::Rotation`], and [`HarmonyMode::TwoHues`] does not change. Default:

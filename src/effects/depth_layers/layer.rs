@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, HueWheel, blend_color, clamp_fields, color_serde};
 
-/// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). With the defaults, the layer stays as it is.
+/// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). With the defaults, the
+/// layer stays as it is.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -62,8 +63,8 @@ pub struct DepthLayer {
     #[reflect(@FieldRange::FRACTION)]
     pub hatching: f32,
     /// How much of a [`Halftone`](crate::Halftone) is seen as dots; the rest is printed as plain
-    /// tones. Whole dots ([`ScreenSampling::Cell`](crate::effects::ScreenSampling::Cell)), and what is
-    /// drawn after paint, focus or a misregistration, do not change. Range 0 to 1, default 1.
+    /// tones. Whole dots ([`ScreenSampling::Cell`](crate::effects::ScreenSampling::Cell)), and what
+    /// is drawn after paint, focus or a misregistration, do not change. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub halftone: f32,
 }

@@ -79,10 +79,10 @@ pub enum LayerBorders {
 pub enum Granularity {
     /// An object, by the depth of its centre, so that no figure is cut in two. An object that
     /// extends over more than 0.4 of the depth map, such as the ground, is divided by pixels; below
-    /// 0.25 it is whole, and between the two it is divided in part. An object changes its layer only
-    /// when its centre has moved by 0.03 of the depth map, or by 15 % of its depth in it if that is
-    /// less. The meshes of an `OutlineGroup` are one object. Needs object ids, which are drawn;
-    /// without the crate's feature `objects`, as [`Granularity::Pixel`].
+    /// 0.25 it is whole, and between the two it is divided in part. An object changes its layer
+    /// only when its centre has moved by 0.03 of the depth map, or by 15 % of its depth in it if
+    /// that is less. The meshes of an `OutlineGroup` are one object. Needs object ids, which are
+    /// drawn; without the crate's feature `objects`, as [`Granularity::Pixel`].
     #[default]
     Object,
     /// A pixel.

@@ -61,8 +61,8 @@ pub struct Focus {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum FocusAt {
-    /// The camera's [`EffectTarget`](crate::effect::EffectTarget). While it has none, or it is behind
-    /// the camera: as [`FocusAt::Distance`].
+    /// The camera's [`EffectTarget`](crate::effect::EffectTarget). While it has none, or it is
+    /// behind the camera: as [`FocusAt::Distance`].
     #[default]
     Target,
     /// What is at [`Focus::distance`].
@@ -76,7 +76,8 @@ pub enum FocusAt {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum FocusStyle {
-    /// Blurred. Reads 12 pixels around each one, and one more for every physical pixel of the radius.
+    /// Blurred. Reads 12 pixels around each one, and one more for every physical pixel of the
+    /// radius.
     #[default]
     Blur,
     /// Printed with red and blue apart along a diagonal, by up to twice the radius.

@@ -67,9 +67,9 @@ pub enum ScreenAnchor {
     /// At the middle of the render target: in a split screen, the screens of all views are
     /// one.
     Window,
-    /// At the objects with a [`PatternAnchor`](crate::objects::PatternAnchor): dots move, turn and grow with
-    /// each of them. Elsewhere as [`ScreenAnchor::View`]. While there are such objects, object ids
-    /// are drawn, which needs the crate's feature `objects`. Grains of
+    /// At the objects with a [`PatternAnchor`](crate::objects::PatternAnchor): dots move, turn and
+    /// grow with each of them. Elsewhere as [`ScreenAnchor::View`]. While there are such objects,
+    /// object ids are drawn, which needs the crate's feature `objects`. Grains of
     /// [`ScreenShape::Stochastic`] move, but neither turn nor grow.
     Object,
 }

@@ -27,8 +27,8 @@ pub enum HatchingMarks {
     #[default]
     Strokes,
     /// Dots of one size, as many as the tone asks for: stipple. They lie on surfaces as strokes do,
-    /// are anchored as strokes are, and grow one by one between the others when a thing comes nearer.
-    /// On surfaces that are seen at an angle, they are ellipses.
+    /// are anchored as strokes are, and grow one by one between the others when a thing comes
+    /// nearer. On surfaces that are seen at an angle, they are ellipses.
     Dots,
 }
 

@@ -22,15 +22,15 @@ use crate::{
 
 /// Shades with strokes: hatching in the half tones, crossed in the shadows, bare where it is light.
 ///
-/// Strokes lie where surfaces meet families of parallel planes, as in an engraving: they follow
-/// the form of things, without texture coordinates. They stay on things that stand still, and on
-/// moving objects that have a [`PatternAnchor`](crate::objects::PatternAnchor). Their width on the screen
-/// stays the same: when a thing comes nearer, new strokes grow between the old ones. The mean
-/// of an area has the darkness that is asked for.
+/// Strokes lie where surfaces meet families of parallel planes, as in an engraving: they follow the
+/// form of things, without texture coordinates. They stay on things that stand still, and on moving
+/// objects that have a [`PatternAnchor`](crate::objects::PatternAnchor). Their width on the screen
+/// stays the same: when a thing comes nearer, new strokes grow between the old ones. The mean of an
+/// area has the darkness that is asked for.
 ///
 /// Strokes are drawn on the geometry of the prepasses, in multisampled views on that of the first
-/// sample; transparent things are hatched by what lies behind them. Skinned and morphed meshes move under
-/// their strokes. The views of cameras with this effect are styled after FXAA and SMAA.
+/// sample; transparent things are hatched by what lies behind them. Skinned and morphed meshes move
+/// under their strokes. The views of cameras with this effect are styled after FXAA and SMAA.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -69,8 +69,8 @@ pub struct Hatching {
     /// take at least 0.3 and at most 0.5: they would touch. Range 0.1 to 0.9, default 0.45.
     #[reflect(@FieldRange::linear(0.1, 0.9))]
     pub layer_darkness: f32,
-    /// Turn of all strokes in degrees: about the vertical axis of the world or the object, or on the
-    /// page. Range -90 to 90, default 0.
+    /// Turn of all strokes in degrees: about the vertical axis of the world or the object, or on
+    /// the page. Range -90 to 90, default 0.
     #[reflect(@FieldRange::linear(-90.0, 90.0).unit("°"))]
     pub angle: f32,
     /// Length of a stroke in logical pixels, on average. Not of dots. Range 10 to 400, default 80.

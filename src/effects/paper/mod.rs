@@ -47,9 +47,9 @@ pub struct Paper {
     pub size: f32,
     /// How far ink runs into the valleys of the sheet, in logical pixels: edges of outlines, of
     /// sketches and of the dots of a [`Halftone`](crate::Halftone) vary within a band of this
-    /// width. The mean width of a line stays within 0.05 pixels; a line that is thin for the
-    /// spread varies by at most three quarters of its width, so that it never vanishes. Lines of
-    /// the faithful equations, contours and outlines around marked objects stay smooth. Range 0 to 2,
+    /// width. The mean width of a line stays within 0.05 pixels; a line that is thin for the spread
+    /// varies by at most three quarters of its width, so that it never vanishes. Lines of the
+    /// faithful equations, contours and outlines around marked objects stay smooth. Range 0 to 2,
     /// default 0.
     #[reflect(@FieldRange::linear(0.0, 2.0).unit("px"))]
     pub ink_bleed: f32,

@@ -15,15 +15,15 @@ use crate::{
 };
 
 /// Paints the picture in three tones by its lightness, near ones and far ones (X-Toon: Barla,
-/// Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras whose scenes do not
-/// have a [`ToonMaterial`](crate::ToonMaterial).
+/// Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras whose scenes do
+/// not have a [`ToonMaterial`](crate::ToonMaterial).
 ///
 /// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Far tones with
 /// soft edges and pale colours are an aerial perspective; equal far tones are an abstraction.
 ///
-/// Bevy's cameras dither by default. On a flat area whose lightness is within 4/255 of a place where a
-/// tone begins, a hard edge turns a code of dither into up to a fifth of the difference of both tones,
-/// which shows as dots: add `DebandDither::Disabled` to the camera, or use soft edges.
+/// Bevy's cameras dither by default. On a flat area whose lightness is within 4/255 of a place
+/// where a tone begins, a hard edge turns a code of dither into up to a fifth of the difference of
+/// both tones, which shows as dots: add `DebandDither::Disabled` to the camera, or use soft edges.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

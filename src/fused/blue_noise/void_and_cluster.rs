@@ -1,6 +1,6 @@
-//! The order of the grains of a tile by void and cluster (Ulichney 1993): grains are added where the
-//! others leave the largest gap. Needs nothing of the crate: the test kit compiles this file too, to
-//! measure what is printed with the same tile.
+//! The order of the grains of a tile by void and cluster (Ulichney 1993): grains are added where
+//! the others leave the largest gap. Needs nothing of the crate: the test kit compiles this file
+//! too, to measure what is printed with the same tile.
 
 /// Grains across and down the tile.
 pub const SIDE: usize = 64;

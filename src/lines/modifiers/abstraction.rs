@@ -16,8 +16,9 @@ pub struct LineAbstraction {
     pub threshold: f32,
     /// Factor of the opacity of creases at full abstraction.
     pub crease_opacity: f32,
-    /// Lines of an object follow its centre and its [`ObjectAbstraction`](crate::objects::ObjectAbstraction),
-    /// see [`Needs::OBJECT_DEPTHS`](crate::effect::Needs::OBJECT_DEPTHS), which the effect must need.
+    /// Lines of an object follow its centre and its
+    /// [`ObjectAbstraction`](crate::objects::ObjectAbstraction), see
+    /// [`Needs::OBJECT_DEPTHS`](crate::effect::Needs::OBJECT_DEPTHS), which the effect must need.
     pub by_objects: bool,
 }
 

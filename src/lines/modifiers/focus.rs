@@ -21,7 +21,8 @@ pub struct LineFocus {
 }
 
 impl LineFocus {
-    /// As shaders take it. `axis`: see [`EffectContext::depth_axis`](crate::effect::EffectContext::depth_axis).
+    /// As shaders take it. `axis`: see
+    /// [`EffectContext::depth_axis`](crate::effect::EffectContext::depth_axis).
     pub(crate) fn uniform(self, axis: Vec2, reference: Option<f32>) -> LineFocusUniform {
         LineFocusUniform {
             axis,

@@ -19,8 +19,8 @@ pub struct LineLayers {
     pub color_amounts: [f32; 3],
     /// The depth map at the borders between near and middle, and between middle and far.
     pub borders: [f32; 2],
-    /// The borders are those of [`Needs::DEPTH_BORDERS`](crate::effect::Needs::DEPTH_BORDERS), if any are
-    /// known, which the effect must need.
+    /// The borders are those of [`Needs::DEPTH_BORDERS`](crate::effect::Needs::DEPTH_BORDERS), if
+    /// any are known, which the effect must need.
     pub finds_borders: bool,
     /// A surface is where its object is, see
     /// [`Needs::OBJECT_DEPTHS`](crate::effect::Needs::OBJECT_DEPTHS), which the effect must need.

@@ -297,9 +297,9 @@ impl Outlines {
                 .is_some_and(|c| c.equations != Equations::Faithful)
     }
 
-    /// Distance in physical pixels within which lines are searched around a pixel.
-    /// `scale` is physical pixels per logical pixel. `sheet`: what the lines are drawn on. `widest_object` is the width of
-    /// the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
+    /// Distance in physical pixels within which lines are searched around a pixel. `scale` is
+    /// physical pixels per logical pixel. `sheet`: what the lines are drawn on. `widest_object` is
+    /// the width of the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
     /// vertices of some mesh say how wide its lines are.
     pub(crate) fn reach(
         &self,

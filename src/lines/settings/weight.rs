@@ -15,11 +15,11 @@ use crate::{
 /// How wide lines are in different places. Every number is a factor of the line's width, or
 /// says how a factor is found; the factors are multiplied. With the defaults, all are 1.
 ///
-/// They apply to corrected lines, on devices with compute shaders. The ideas
-/// are those of ink drawing: thick outside and thin inside, heavy in the shade, tapered
-/// where a line ends. The light is that of the surface in front; of creases and object
-/// edges, the mean over both sides. The middle of a line whose width changes is exactly the edge; that of an even
-/// line of odd width is half a pixel further in.
+/// They apply to corrected lines, on devices with compute shaders. The ideas are those of ink
+/// drawing: thick outside and thin inside, heavy in the shade, tapered where a line ends. The light
+/// is that of the surface in front; of creases and object edges, the mean over both sides. The
+/// middle of a line whose width changes is exactly the edge; that of an even line of odd width is
+/// half a pixel further in.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -44,8 +44,8 @@ const FIRST_PERIOD: u32 = 4;
 const PERIOD: u32 = 64;
 /// Frames after which a suspicion without a result ends: pipelines may take long.
 const PATIENCE: u32 = 600;
-/// Frames after which a trial without a result ends: its camera is gone, since ids are counted in every frame
-/// of a trial.
+/// Frames after which a trial without a result ends: its camera is gone, since ids are counted in
+/// every frame of a trial.
 const TRIAL: u32 = 60;
 
 /// A camera with missing ids.

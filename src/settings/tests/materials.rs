@@ -187,3 +187,14 @@ fn the_ranges_of_components_are_those_that_are_used() {
     check(MeshSections::sanitized);
     check(ObjectAbstraction::sanitized);
 }
+
+#[test]
+fn any_alpha_cutoff_is_clamped() {
+    fuzz("DepthWrite::alpha_cutoff", 0.01, 1.0, |x| {
+        let write = crate::objects::DepthWrite {
+            alpha_cutoff: x,
+            ..Default::default()
+        };
+        write.sanitized().alpha_cutoff
+    });
+}

@@ -77,8 +77,8 @@ impl Numbers {
     }
 }
 
-/// Gives all numbers, flags and modes of a value odd ones. Lists keep their length, and enums with fields
-/// their variant.
+/// Gives all numbers, flags and modes of a value odd ones. Lists keep their length, and enums with
+/// fields their variant.
 pub(crate) fn scramble(value: &mut dyn PartialReflect, numbers: &mut Numbers) {
     if let Some(x) = value.try_downcast_mut::<f32>() {
         *x = numbers.float();
@@ -132,8 +132,8 @@ fn mode(value: &dyn Enum, numbers: &mut Numbers) -> Option<DynamicEnum> {
     Some(DynamicEnum::new(variant.name(), DynamicVariant::Unit))
 }
 
-/// The first number that is not finite, or not in the range that its field documents, and where it is.
-/// `range`: of the field that has the value.
+/// The first number that is not finite, or not in the range that its field documents, and where it
+/// is. `range`: of the field that has the value.
 pub(crate) fn wrong(value: &dyn PartialReflect, range: Option<FieldRange>) -> Option<String> {
     if let Some(x) = value.try_downcast_ref::<f32>() {
         return is_wrong(f64::from(*x), range).then(|| x.to_string());

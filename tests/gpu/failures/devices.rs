@@ -21,8 +21,9 @@ fn many_passes() -> ComicStyle {
 /// A camera without multisampling, and another one that draws over it to the same target.
 fn with_second_camera(size: UVec2, msaa: Msaa) -> (Small, Entity) {
     let mut small = Small::new(size, Msaa::Off);
-    // Where a later pass of a frame fails, wgpu runs none of its commands but maps the engine's copy of the
-    // numbers of clusters, whose memory counts as written and is not: the engine (Bevy 0.19.1) overflows.
+    // Where a later pass of a frame fails, wgpu runs none of its commands but maps the engine's
+    // copy of the numbers of clusters, whose memory counts as written and is not: the engine (Bevy
+    // 0.19.1) overflows.
     cluster_on_cpu(&mut small);
     let target = small.headless.render_target();
     let second = small.world().spawn(camera(target, msaa)).id();
@@ -41,8 +42,8 @@ fn style_both(small: &mut Small, second: Entity) {
     world.flush();
 }
 
-/// The engine cannot give cameras of one target prepasses with different samples: the first camera has
-/// them, and the other one is drawn without.
+/// The engine cannot give cameras of one target prepasses with different samples: the first camera
+/// has them, and the other one is drawn without.
 #[test]
 #[ignore = "long: many frames of two cameras"]
 fn cameras_with_different_samples_share_a_target() {
@@ -97,8 +98,8 @@ fn errors_of(small: &mut Small, errors: &Errors, frames: usize) -> BTreeSet<Stri
     errors.lock().expect("no panic").clone()
 }
 
-/// Where the game itself gives both cameras a prepass, passes of the engine fail. This crate adds no error,
-/// and the diagnostics say why one of the cameras has no ids of objects.
+/// Where the game itself gives both cameras a prepass, passes of the engine fail. This crate adds
+/// no error, and the diagnostics say why one of the cameras has no ids of objects.
 #[test]
 fn prepasses_of_a_game_with_different_samples_are_reported() {
     let (mut small, second) = with_second_camera(size(), Msaa::Sample4);
@@ -136,8 +137,8 @@ fn put_wall(small: &mut Small) -> Entity {
     small.put(Cuboid::new(1.2, 3.0, 0.2), StandardMaterial::default(), at)
 }
 
-/// Objects that the engine leaves out because others hide them are not missed, from the first frame on and
-/// where it begins later.
+/// Objects that the engine leaves out because others hide them are not missed, from the first frame
+/// on and where it begins later.
 #[test]
 fn occlusion_culling_changes_nothing() {
     let shoot = |small: &mut Small| {
@@ -188,8 +189,8 @@ fn behind_a_wall(style: Option<&ComicStyle>) -> [image::RgbaImage; 2] {
     [first, small.picture()]
 }
 
-/// What was hidden and is not any more is drawn by the late prepass of the engine: effects that read
-/// depth, normals or ids before it would miss it for a frame.
+/// What was hidden and is not any more is drawn by the late prepass of the engine: effects that
+/// read depth, normals or ids before it would miss it for a frame.
 #[test]
 fn what_is_no_longer_hidden_is_styled_at_once() {
     let [first, later] = behind_a_wall(None);
@@ -287,7 +288,8 @@ fn a_device_without_compute_shaders_draws_a_style() {
     };
     let mut small = Small::with(options, Msaa::Off);
     put_lightmapped(&mut small);
-    // The engine decides by the adapter, not by its limits, whether it has compute shaders, and fails.
+    // The engine decides by the adapter, not by its limits, whether it has compute shaders, and
+    // fails.
     cluster_on_cpu(&mut small);
     let plain = small.settle().picture();
     let of_engine = small.errors();

@@ -43,7 +43,8 @@ fn without_a_prepass_effects_without_depth_still_run() {
     assert_eq!(small.errors(), 0);
 }
 
-/// No numbers, infinite ones, and ones that are far out of range. `fuzz.rs` has more of them, and all effects.
+/// No numbers, infinite ones, and ones that are far out of range. `fuzz.rs` has more of them, and
+/// all effects.
 #[test]
 fn absurd_settings_equal_their_sanitized_selves() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);

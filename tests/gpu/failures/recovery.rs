@@ -1,4 +1,5 @@
-//! The engine asks for a new device after an error of the renderer: all that is on the GPU is made again.
+//! The engine asks for a new device after an error of the renderer: all that is on the GPU is made
+//! again.
 //!
 //! A device that is lost ends the app, since the engine's clusters of lights panic (Bevy 0.19.1).
 
@@ -20,13 +21,14 @@ use crate::{
     small::{RenderErrors, spawn_objects},
 };
 
-/// How often the renderer was started in an app whose handler may ask for a new device. Devices of two
-/// instances of wgpu can be equal.
+/// How often the renderer was started in an app whose handler may ask for a new device. Devices of
+/// two instances of wgpu can be equal.
 #[derive(Resource, Default)]
 struct Starts(usize);
 
-/// The small scene, which has no light: the engine does not draw the same light after it has recovered. Its
-/// app asks for a new device after an error. Also gives the objects that [`mark`] marks.
+/// The small scene, which has no light: the engine does not draw the same light after it has
+/// recovered. Its app asks for a new device after an error. Also gives the objects that [`mark`]
+/// marks.
 fn scene(size: UVec2, msaa: Msaa) -> (Small, [Entity; 2]) {
     let mut headless = Headless::new(options(size), ComicsPlugin);
     headless
@@ -57,7 +59,8 @@ fn scene(size: UVec2, msaa: Msaa) -> (Small, [Entity; 2]) {
     (small, marked)
 }
 
-/// Objects of the kinds that this crate draws once more. Gives one in front, and one that is partly hidden.
+/// Objects of the kinds that this crate draws once more. Gives one in front, and one that is partly
+/// hidden.
 fn put_objects(small: &mut Small) -> [Entity; 2] {
     let glass = StandardMaterial {
         alpha_mode: AlphaMode::Blend,

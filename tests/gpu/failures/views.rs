@@ -126,7 +126,8 @@ fn a_target_may_have_another_size_in_every_frame() {
 fn an_empty_viewport_adds_no_render_error() {
     let run = |style: bool| {
         let mut small = Small::alone(options(size()), Msaa::Off);
-        // The engine's own errors would be counted: one for every frame, and a new app draws some twice.
+        // The engine's own errors would be counted: one for every frame, and a new app draws some
+        // twice.
         cluster_on_cpu(&mut small);
         if style {
             small.style(&full_style());

@@ -22,10 +22,10 @@ const MODES: [HarmonyMode; 4] = [
 ];
 
 /// The most that a conversion to `OKLab` and back changes a component, as a fraction of the largest
-/// one. In units of 2^-24: the cube roots have errors of up to 5 of them (2 units in the last place,
-/// and a third of the rounding of the sum below), their sums a and b with factors of 4.9 and 1.6 in
-/// all 8 times that, L 8. The sums of these with the largest factors have 31, their cubes 95, and
-/// the sums of these with factors of 7.6 in all 98 times 7.6.
+/// one. In units of 2^-24: the cube roots have errors of up to 5 of them (2 units in the last
+/// place, and a third of the rounding of the sum below), their sums a and b with factors of 4.9 and
+/// 1.6 in all 8 times that, L 8. The sums of these with the largest factors have 31, their cubes
+/// 95, and the sums of these with factors of 7.6 in all 98 times 7.6.
 const CONVERSION_ERROR: f64 = 745.0 / (1 << 24) as f64;
 
 /// What the shader takes.

@@ -178,8 +178,8 @@ fn what_is_no_depth_lies_at_the_far_end() {
     assert_eq!(found[1][..2], [1.0, 0.0]);
 }
 
-/// With flags 0 to 3 (neither, orthographic, logarithmic, both), and with the upper row of the window
-/// in the sky or not.
+/// With flags 0 to 3 (neither, orthographic, logarithmic, both), and with the upper row of the
+/// window in the sky or not.
 #[test]
 fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
     let of = |flags, sky| [0.25, 0.25, 0.0, 0.0, 10.0, 10.0, 0.05, flags, 0.25, sky];

@@ -61,7 +61,8 @@ fn settings(s: &Outlines) -> String {
     )
 }
 
-/// Both words in halves, which are exact as numbers. The fragment: i(0), i(1); the grid: from i(2) on.
+/// Both words in halves, which are exact as numbers. The fragment: i(0), i(1); the grid: from i(2)
+/// on.
 const FOUND: &str = "
     line_pass.grid.rect = vec4(i32(i(2u)), i32(i(3u)), i32(i(4u)), i32(i(5u)));
     let words = find(vec4(i(0u) + 0.5, i(1u) + 0.5, 0.0, 1.0));
@@ -91,8 +92,8 @@ fn rows() -> Vec<[f32; 6]> {
     rows
 }
 
-/// No two pairs of them are at the same angle, and one pair is at 60.03 degrees. The last one is too
-/// short to be a normal.
+/// No two pairs of them are at the same angle, and one pair is at 60.03 degrees. The last one is
+/// too short to be a normal.
 const NORMALS: [[f32; 3]; 7] = [
     [0.1, 0.2, 0.9],
     [0.65, -0.1, 0.7],
@@ -185,8 +186,8 @@ impl Picture {
     }
 }
 
-/// Compares the cracks of all pixels. Returns how many run along silhouettes, creases and borders of
-/// objects.
+/// Compares the cracks of all pixels. Returns how many run along silhouettes, creases and borders
+/// of objects.
 fn assert_matches_the_reference(
     picture: &Picture,
     outlines: &Outlines,

@@ -5,8 +5,8 @@ use bevy_comics_testkit::reference::footprint::singular_values;
 use super::*;
 use crate::prelude::*;
 
-/// Axes at any angle, turned in the picture, of which the shorter one is down to a ten-thousandth of
-/// the longer one.
+/// Axes at any angle, turned in the picture, of which the shorter one is down to a ten-thousandth
+/// of the longer one.
 pub fn change() -> impl Strategy<Value = [f32; 4]> {
     let turn = 0.0f32..std::f32::consts::TAU;
     (turn.clone(), turn, -8.0f32..8.0, -13.0f32..0.0).prop_map(|(map, screen, long, ratio)| {
@@ -29,8 +29,8 @@ pub fn pair(row: &[f32; 4]) -> (DVec2, DVec2) {
 
 /// Relative errors of the two axes. Where both are equally long, the longer one is the root of the
 /// root of a difference that vanishes: its error is at most the root of that of a number. The
-/// products of the determinant are up to the square of the long axis, and cancel; the shorter axis is
-/// that over the longer one.
+/// products of the determinant are up to the square of the long axis, and cancel; the shorter axis
+/// is that over the longer one.
 pub fn rounding(long: f64, short: f64) -> [f64; 2] {
     let unit = 2f64.powi(-24);
     let uneven = (1.0 - short / long).max(2f64.powi(-12));

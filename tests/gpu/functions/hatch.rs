@@ -3,8 +3,8 @@
 use super::*;
 use crate::prelude::*;
 
-/// The unit normal is that of the mesh, or of the plane that the place changes in. What has no extent has
-/// one, too.
+/// The unit normal is that of the mesh, or of the plane that the place changes in. What has no
+/// extent has one, too.
 #[test]
 fn surfaces_at_rest_have_a_normal() {
     let directions = (vec(-1.0f32..=1.0, 9), -12i32..12, any::<bool>());

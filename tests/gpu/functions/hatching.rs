@@ -11,8 +11,8 @@ use bevy_comics_testkit::reference::{
 use super::*;
 use crate::prelude::*;
 
-/// A view of 90 degrees, 96 x 64 pixels, from the origin; the settings, and the plane that the ray of a
-/// pixel meets.
+/// A view of 90 degrees, 96 x 64 pixels, from the origin; the settings, and the plane that the ray
+/// of a pixel meets.
 const PLACE: &str = "
     #import bevy_comics::effect::stipple::stippled
     #import bevy_comics::effect::strokes::{Strokes, Surface, hatched, page_at}
@@ -42,8 +42,8 @@ fn view() -> DMat4 {
     ])
 }
 
-/// The ranges of the inputs: two tilts of the plane, its distance, the darkness; spacing, length, breaks,
-/// wobble, pressure, layers, darkness of a layer, angle; the place in the picture.
+/// The ranges of the inputs: two tilts of the plane, its distance, the darkness; spacing, length,
+/// breaks, wobble, pressure, layers, darkness of a layer, angle; the place in the picture.
 const STROKES: [[f32; 2]; 13] = [
     [-1.0, 1.0],
     [-1.0, 1.0],
@@ -69,8 +69,8 @@ fn plane(row: &[f32; 13]) -> [DVec3; 2] {
     ]
 }
 
-/// Whether a coverage is that of the reference, there or a little beside it: where rounding decides which
-/// mark or which axis is meant, both are right.
+/// Whether a coverage is that of the reference, there or a little beside it: where rounding decides
+/// which mark or which axis is meant, both are right.
 fn is_near(hatch: &Hatch, on: &Surface, tone: f64, found: f32) -> bool {
     let near = [-0.02, 0.0, 0.02].map(|by| {
         let place = on.place + by * (on.across + on.down);
@@ -81,8 +81,8 @@ fn is_near(hatch: &Hatch, on: &Surface, tone: f64, found: f32) -> bool {
     (low..=high).contains(&f64::from(found))
 }
 
-/// Every tone, angle and level, on surfaces and on the page. `call`: the function, and the axes before they
-/// turn by the angle.
+/// Every tone, angle and level, on surfaces and on the page. `call`: the function, and the axes
+/// before they turn by the angle.
 fn check_marks(marks: HatchingMarks, ranges: [[f32; 2]; 13], [function, axes]: [&str; 2]) {
     let row = vec(0.0f32..=1.0, 13).prop_filter_map("dots are seen from the front", |parts| {
         let mut row = std::array::from_fn(|k| {
@@ -160,8 +160,8 @@ fn the_mean_of_strokes_is_one() {
     }
 }
 
-/// Truth: all pixels that a disc touches cover its area together, however small it is, and however it is
-/// seen.
+/// Truth: all pixels that a disc touches cover its area together, however small it is, and however
+/// it is seen.
 #[test]
 fn the_sum_of_a_disc_is_its_area() {
     for (long, short) in [(1.0, 1.0), (1.0, 0.4), (1.0, 0.1)] {

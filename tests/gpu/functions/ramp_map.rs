@@ -97,8 +97,8 @@ fn tones_of_painted_ramps_are_areas_of_their_texels() {
     }
 }
 
-/// Truth: the mean of 1024 samples of the nearest texel. The places of pixels are such that no sample lies
-/// on both sides of an edge, so that the mean is exact.
+/// Truth: the mean of 1024 samples of the nearest texel. The places of pixels are such that no
+/// sample lies on both sides of an edge, so that the mean is exact.
 #[test]
 fn tones_of_painted_ramps_are_the_mean_of_1024_samples() {
     let count = 256;

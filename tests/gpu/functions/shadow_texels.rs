@@ -1,4 +1,5 @@
-//! The slope of the shadow in cube maps. That of flat shadow maps is checked in `toon/lamp_shadow.rs`.
+//! The slope of the shadow in cube maps. That of flat shadow maps is checked in
+//! `toon/lamp_shadow.rs`.
 
 use bevy_comics_testkit::reference::shadow_texels::{SAMPLES, nearest_plane};
 

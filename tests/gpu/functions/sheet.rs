@@ -1,4 +1,5 @@
-//! The sheet: its height, and ink on it. Pictures on paper equal the reference that is measured here.
+//! The sheet: its height, and ink on it. Pictures on paper equal the reference that is measured
+//! here.
 
 use bevy_comics_testkit::reference::sheet::{Sheet, height};
 

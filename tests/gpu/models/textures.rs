@@ -45,8 +45,8 @@ fn warnings(errors: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The example ends well, writes a picture of the model, and says of each texture what these parts are
-/// found in.
+/// The example ends well, writes a picture of the model, and says of each texture what these parts
+/// are found in.
 fn assert_named(folder: &Path, model: &str, says: &[&[&str]]) {
     let arguments = "--size 64x64 --msaa 1 --frames 2 --style none --out w.png";
     let errors = render(folder, &format!("{model} {arguments}"));

@@ -10,9 +10,9 @@ use super::{
 };
 use crate::prelude::*;
 
-/// The fraction of pixels in flat parts of the picture that may have another tone: pixels at which a
-/// threshold of dots, strokes or bands lies within one code. 2 % is the line between two bands of tone
-/// over the sphere and the box. A pattern that is moved, scaled or missing changes a tenth at
+/// The fraction of pixels in flat parts of the picture that may have another tone: pixels at which
+/// a threshold of dots, strokes or bands lies within one code. 2 % is the line between two bands of
+/// tone over the sphere and the box. A pattern that is moved, scaled or missing changes a tenth at
 /// least.
 const UNDECIDED: f64 = 0.02;
 
@@ -92,8 +92,8 @@ pub fn assert_styled(shown: &Shown) {
     assert_eq!(pink, 0.0, "{what}: not drawn");
 }
 
-/// Sees prepasses of this crate that draw something else, or elsewhere, than those of the engine. The
-/// jitter of TAA differs by up to 0.75 pixels of the main pass between two frames.
+/// Sees prepasses of this crate that draw something else, or elsewhere, than those of the engine.
+/// The jitter of TAA differs by up to 0.75 pixels of the main pass between two frames.
 pub fn assert_silhouettes(row: &Row, plain: &Mask, styled: Option<&Mask>, shown: &Shown) {
     let what = &shown.what;
     if let Some(styled) = styled {
@@ -111,8 +111,9 @@ pub fn assert_silhouettes(row: &Row, plain: &Mask, styled: Option<&Mask>, shown:
         };
         assert!(apart <= most, "{what}: the geometry differs: {apart}");
     }
-    // Sees lines that are missing, or are not at the rims of things: those of another viewport, resolution
-    // or projection are several pixels off. A card may be a speck where the view is small.
+    // Sees lines that are missing, or are not at the rims of things: those of another viewport,
+    // resolution or projection are several pixels off. A card may be a speck where the view is
+    // small.
     if GROUPS[row.effects].0 == LINES {
         let inked = inked_rim(&shown.styled, plain);
         println!("{what}: {inked:.3} of the rims are inked");
@@ -131,9 +132,10 @@ pub fn assert_still(small: &mut Small, row: &Row, shown: &Shown) {
         }
         return;
     }
-    // Eight frames later the jitter is the same, and the history has taken up 12 % of them: at edges, their
-    // contrast changes by as much and lines follow. Elsewhere nothing changes. A pattern
-    // that does not follow the jitter, or a range that never settles, changes flat parts too.
+    // Eight frames later the jitter is the same, and the history has taken up 12 % of them: at
+    // edges, their contrast changes by as much and lines follow. Elsewhere nothing changes. A
+    // pattern that does not follow the jitter, or a range that never settles, changes flat parts
+    // too.
     small.headless.step(8);
     let now = crop(&small.picture(), shown.rect);
     let is_flat = |x, y| !is_at_edge(&shown.plain, x, y, 4);
@@ -159,8 +161,8 @@ fn reach(row: &Row) -> u32 {
     one + texel + u32::from(smaa)
 }
 
-/// The fraction of the flat parts of `base` where a picture has a colour that `other` has not, within
-/// the row's reach.
+/// The fraction of the flat parts of `base` where a picture has a colour that `other` has not,
+/// within the row's reach.
 fn unexplained(row: &Row, picture: &RgbaImage, other: &RgbaImage, base: &RgbaImage) -> f64 {
     let reach = reach(row);
     // The engine's FXAA mixes the outermost pixels of a viewport with what is beside it.
@@ -180,8 +182,8 @@ fn unexplained(row: &Row, picture: &RgbaImage, other: &RgbaImage, base: &RgbaIma
     strange / flat
 }
 
-/// The row against its base. Anti-aliasing, samples and resolution only mix or move colours at edges;
-/// HDR and the deferred renderer change numbers by a code.
+/// The row against its base. Anti-aliasing, samples and resolution only mix or move colours at
+/// edges; HDR and the deferred renderer change numbers by a code.
 pub fn assert_near(row: &Row, shown: &Shown, base: &Base) {
     let what = &shown.what;
     // Sees a row that the engine draws otherwise, so that the rest would compare nothing.
@@ -191,9 +193,9 @@ pub fn assert_near(row: &Row, shown: &Shown, base: &Base) {
     println!("{what}: unexplained {engine:.4} of the engine, {ours:.4} of the style");
     assert!(engine <= UNDECIDED, "{what}: {engine} without a style");
     assert!(ours <= UNDECIDED, "{what}: {ours} with its style");
-    // Sees lines that are lost or wider, tones that are encoded twice, and effects that are weaker: mixing
-    // keeps the mean. A quarter of the effect is what the rims of wide strokes vary by; three
-    // codes are one for each of: rounding of both pictures, of the deferred colours, of HDR.
+    // Sees lines that are lost or wider, tones that are encoded twice, and effects that are weaker:
+    // mixing keeps the mean. A quarter of the effect is what the rims of wide strokes vary by;
+    // three codes are one for each of: rounding of both pictures, of the deferred colours, of HDR.
     let effect = |styled, plain| {
         let (styled, plain) = (mean(styled), mean(plain));
         [0, 1, 2].map(|i| styled[i] - plain[i])

@@ -48,7 +48,8 @@ fn codes_near(picture: &RgbaImage, x: u32, y: u32, reach: u32) -> [(u8, u8); 3] 
     found
 }
 
-/// Whether a pixel is at most `reach` pixels from an edge: neighbours whose codes differ by more than
+/// Whether a pixel is at most `reach` pixels from an edge: neighbours whose codes differ by more
+/// than
 /// [`CODES`].
 pub fn is_at_edge(picture: &RgbaImage, x: u32, y: u32, reach: u32) -> bool {
     near(size(picture), x, y, reach).any(|(x, y)| {
@@ -107,8 +108,8 @@ impl Mask {
         near.any(|(i, j)| self.at(i, j) != self.at(x, y))
     }
 
-    /// The fraction of pixels that differ from another mask, and are more than `reach` pixels from the rim
-    /// of this one.
+    /// The fraction of pixels that differ from another mask, and are more than `reach` pixels from
+    /// the rim of this one.
     pub fn apart(&self, other: &Self, reach: u32) -> f64 {
         assert_eq!(self.size, other.size);
         fraction(self.size, |x, y| {
@@ -118,8 +119,8 @@ impl Mask {
 }
 
 /// Of the pixels at the rim of things, the fraction that has ink within 2 pixels: a pixel whose
-/// largest channel is below 100. Anti-aliasing lightens a line of 2 pixels near the steps of its sides
-/// only: between these there are dark pixels. Sky and floor have none.
+/// largest channel is below 100. Anti-aliasing lightens a line of 2 pixels near the steps of its
+/// sides only: between these there are dark pixels. Sky and floor have none.
 pub fn inked_rim(picture: &RgbaImage, mask: &Mask) -> f64 {
     let size = mask.size;
     let is_dark = |(x, y): (u32, u32)| picture.get_pixel(x, y).0[..3].iter().all(|c| *c < 100);

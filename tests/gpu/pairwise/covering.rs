@@ -98,8 +98,8 @@ impl Row {
         let deferred = !(multisampled && self.deferred);
         // The engine leaves TAA out of multisampled views, with a warning.
         let temporal = !(multisampled && self.is_temporal());
-        // The engine's TAA (0.19.1) draws inside the viewport, but reads the whole texture: it shrinks
-        // the picture into the viewport again in every frame.
+        // The engine's TAA (0.19.1) draws inside the viewport, but reads the whole texture: it
+        // shrinks the picture into the viewport again in every frame.
         let part = !(self.area == Area::Part && self.is_temporal());
         deferred && temporal && part
     }
@@ -122,8 +122,8 @@ fn rows_contain_every_allowed_pair_and_no_other() {
         let (rows, never) = cover(&sizes, |levels| {
             vec![Row::new(levels, samples).is_allowed(); FACTORS]
         });
-        // Each row adds a pair at least; the time of the tests grows with the rows. The least is the
-        // product of the two largest factors.
+        // Each row adds a pair at least; the time of the tests grows with the rows. The least is
+        // the product of the two largest factors.
         let least = GROUPS.len() * VIEWS.len();
         println!("{samples:?}: {} rows, at least {least}", rows.len());
         assert!((least..=2 * least).contains(&rows.len()), "{}", rows.len());

@@ -27,8 +27,8 @@ fn of(names: &[&str]) -> ComicStyle {
     with_all(|name| names.contains(&name))
 }
 
-/// Effects with their defaults, but for drawings that do not change with time, and a sheet that is fixed
-/// to the viewport: that of a part of a target is that of a target of its size.
+/// Effects with their defaults, but for drawings that do not change with time, and a sheet that is
+/// fixed to the viewport: that of a part of a target is that of a target of its size.
 fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
     let still = ComicStyle::new()
         .with(Sketch {

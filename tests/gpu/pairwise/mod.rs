@@ -1,5 +1,5 @@
-//! Pairs of what a camera can be: samples, HDR, projection, renderer, anti-aliasing, viewport and effects.
-//! Every pair that the engine supports is in a row, and every row is drawn and checked.
+//! Pairs of what a camera can be: samples, HDR, projection, renderer, anti-aliasing, viewport and
+//! effects. Every pair that the engine supports is in a row, and every row is drawn and checked.
 
 pub mod checks;
 pub mod compare;
@@ -29,7 +29,8 @@ struct Bench {
     bases: HashMap<(View, usize, UVec2), Base>,
 }
 
-/// Where the view's main pass has drawn things, in pixels of the picture; `None` without a depth prepass.
+/// Where the view's main pass has drawn things, in pixels of the picture; `None` without a depth
+/// prepass.
 fn mask(small: &Small, row: &Row, rect: URect) -> Option<Mask> {
     let depth = small.depth()?;
     let size = rect.size();

@@ -27,7 +27,8 @@ pub const PART: URect = URect {
 /// The colour of the target where no camera draws: magenta, which the scene does not have.
 pub const OUTSIDE: [u8; 3] = [255, 0, 255];
 
-/// Frames until a change has reached the picture and the diagnostics. The history of TAA takes longer.
+/// Frames until a change has reached the picture and the diagnostics. The history of TAA takes
+/// longer.
 const SETTLE: usize = 5;
 const SETTLE_HISTORY: usize = 32;
 
@@ -138,9 +139,9 @@ fn eye() -> Transform {
     Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y)
 }
 
-/// The nearest and the farthest thing are cards across the view, each at one distance: so the range of
-/// depth does not depend on which points of pixels are drawn, and pictures with other samples, jitter or
-/// resolution have the same depth map.
+/// The nearest and the farthest thing are cards across the view, each at one distance: so the range
+/// of depth does not depend on which points of pixels are drawn, and pictures with other samples,
+/// jitter or resolution have the same depth map.
 fn put_cards(small: &mut Small) {
     let cards = [
         (Vec3::new(-1.0, -0.5, -2.5), Vec2::splat(0.5), 0.9),
@@ -232,8 +233,8 @@ fn spawn_camera(world: &mut World, row: &Row, target: RenderTarget) -> Entity {
     spawned.id()
 }
 
-/// Replaces the camera by a new one, without history, and draws the scene with it until the picture is
-/// settled. Without a style it has a depth prepass; a style requests what it needs.
+/// Replaces the camera by a new one, without history, and draws the scene with it until the picture
+/// is settled. Without a style it has a depth prepass; a style requests what it needs.
 pub fn shoot(small: &mut Small, row: &Row, size: UVec2, style: Option<&ComicStyle>) {
     if small.headless.options.size != size {
         small.headless.resize(size, 1.0);

@@ -1,5 +1,6 @@
-//! An app with the inspector whose window is never shown. Its panel is laid out, and is given the messages
-//! that a window would send. Nothing is drawn of it, and frames pass only when a session waits.
+//! An app with the inspector whose window is never shown. Its panel is laid out, and is given the
+//! messages that a window would send. Nothing is drawn of it, and frames pass only when a session
+//! waits.
 
 use std::{
     cell::{Cell, RefCell},
@@ -24,7 +25,8 @@ use serde_json::Value;
 use super::session::Session;
 use crate::prelude::*;
 
-/// Frames after which an expected state is given up. The panel looks at its files four times a second.
+/// Frames after which an expected state is given up. The panel looks at its files four times a
+/// second.
 const PATIENCE: usize = 500;
 
 /// The time of a frame in the app: animations of the toolkit are over after one.
@@ -60,8 +62,8 @@ pub struct HiddenWindow {
 }
 
 impl HiddenWindow {
-    /// Starts an app with a window of a size in physical pixels, with `scale` physical pixels per logical
-    /// pixel.
+    /// Starts an app with a window of a size in physical pixels, with `scale` physical pixels per
+    /// logical pixel.
     pub fn open(size: [u32; 2], scale: f64, shown: &Shown) -> Self {
         static OPENED: AtomicU32 = AtomicU32::new(0);
         let number = OPENED.fetch_add(1, Ordering::Relaxed);

@@ -1,5 +1,5 @@
-//! Nothing of the shipped WGSL is left out: every entry point is composed, and every definition that a
-//! file asks for is set for some entry point that the file is a part of.
+//! Nothing of the shipped WGSL is left out: every entry point is composed, and every definition
+//! that a file asks for is set for some entry point that the file is a part of.
 
 use bevy_comics_testkit::asked::{File, definitions, files, has_entry_point, reached};
 

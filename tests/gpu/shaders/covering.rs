@@ -99,8 +99,9 @@ pub fn all_pairs(sizes: &[usize]) -> BTreeSet<Pair> {
     all
 }
 
-/// Rows of a level of every factor that together have every pair of levels that can be, and the pairs that
-/// cannot. Each row is the best of several random ones. `counts`: which factors of a row have their level.
+/// Rows of a level of every factor that together have every pair of levels that can be, and the
+/// pairs that cannot. Each row is the best of several random ones. `counts`: which factors of a row
+/// have their level.
 pub fn cover(
     sizes: &[usize],
     counts: impl Fn(&[usize]) -> Vec<bool>,
@@ -137,8 +138,8 @@ pub fn cover(
     (rows, never)
 }
 
-/// The same of lists of choices. `resolved`: the definitions of a row without those that need others it
-/// lacks, and with what follows from them.
+/// The same of lists of choices. `resolved`: the definitions of a row without those that need
+/// others it lacks, and with what follows from them.
 pub fn covering(
     lists: &[&[Choice]],
     resolved: impl Fn(Vec<&'static str>) -> Vec<&'static str>,

@@ -43,7 +43,8 @@ fn check(variants: &[Definitions]) {
     }
 }
 
-/// Everything that the tests of this file and of `parts` compose, but for texts that are read again.
+/// Everything that the tests of this file and of `parts` compose, but for texts that are read
+/// again.
 pub fn variants() -> Vec<Definitions> {
     [
         modes(),
@@ -152,7 +153,8 @@ fn debug_views() -> Vec<Definitions> {
     all.iter().map(of_view).collect()
 }
 
-/// Each effect alone, with everything that its modes set, in some view; and all without variants at once.
+/// Each effect alone, with everything that its modes set, in some view; and all without variants at
+/// once.
 #[test]
 fn every_effect_composes_and_validates() {
     let views = some_views();

@@ -1,5 +1,5 @@
-//! Shaders that are composed with the engine's own modules: those of motion lines and of transparent
-//! meshes. Those of the toon material are in `toon_shaders`.
+//! Shaders that are composed with the engine's own modules: those of motion lines and of
+//! transparent meshes. Those of the toon material are in `toon_shaders`.
 
 use bevy::shader::Shader;
 use bevy_comics_testkit::wgsl::Library;
@@ -40,8 +40,8 @@ fn ink() -> Vec<Variant> {
     pairs("motion_lines/ink.wgsl", LISTS, in_main_pass)
 }
 
-/// Transparent meshes that write depth, with the definitions of the engine's prepass. Materials without
-/// bind groups (`BINDLESS`) are known where pixels below an alpha are left out.
+/// Transparent meshes that write depth, with the definitions of the engine's prepass. Materials
+/// without bind groups (`BINDLESS`) are known where pixels below an alpha are left out.
 fn transparent() -> Vec<Variant> {
     const LISTS: &[&str] = &[
         PROJECTIONS,

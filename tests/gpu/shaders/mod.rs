@@ -1,6 +1,6 @@
-//! Every shader variant that production can ask for composes and validates; where there are too many of
-//! them, every pair of what selects them. `scripts/translate` translates what the tests of this folder
-//! and of `toon_shaders` compose, and nothing else.
+//! Every shader variant that production can ask for composes and validates; where there are too
+//! many of them, every pair of what selects them. `scripts/translate` translates what the tests of
+//! this folder and of `toon_shaders` compose, and nothing else.
 
 mod complete;
 pub mod covering;

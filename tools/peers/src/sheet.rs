@@ -1,5 +1,5 @@
-//! The figure with the engine's `StandardMaterial`, with bevy_shader_mtoon and with this crate, under
-//! four kinds of light.
+//! The figure with the engine's `StandardMaterial`, with bevy_shader_mtoon and with this crate,
+//! under four kinds of light.
 
 use std::{fs::File, io::BufWriter, path::Path};
 
@@ -88,8 +88,8 @@ fn row(who: Who) -> Vec<RgbaImage> {
     Lighting::ALL.map(picture).into()
 }
 
-/// Skin by the share of all light, with one edge under several lamps. The looks of the figure are made for
-/// the light of its scene.
+/// Skin by the share of all light, with one edge under several lamps. The looks of the figure are
+/// made for the light of its scene.
 fn share_light(world: &mut World) {
     let color = |code| Color::from(Srgba::hex(code).expect("a color"));
     let stops = [

@@ -108,8 +108,8 @@ fn over_nothing(times: &Table, [section, scene, variant]: [&str; 3]) -> Vec<f64>
     own.iter().zip(&nothing).map(|(v, n)| v - n).collect()
 }
 
-/// By how many milliseconds a style costs more with a part than without: the least, the median and the
-/// most of the rounds.
+/// By how many milliseconds a style costs more with a part than without: the least, the median and
+/// the most of the rounds.
 fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> Option<[f64; 3]> {
     let [part, base] = sections;
     let with = over_nothing(times, [part, scene, style]);

@@ -15,8 +15,8 @@ const PAGE: &str = include_str!("page.html");
 /// The names under which systems have the browser.
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
-/// What is not ours: the start of each message, and whose it is. None of it is in shaders that the engine
-/// builds for browsers, but for the last.
+/// What is not ours: the start of each message, and whose it is. None of it is in shaders that the
+/// engine builds for browsers, but for the last.
 const KNOWN: [(&str, &str); 3] = [
     (
         "binding_array element type",

@@ -1,8 +1,8 @@
 //! Translates shaders for all platforms, and holds them to the limits of WebGPU.
 //!
-//! `translate FOLDER`: every `*.wgsl` file of the folder becomes SPIR-V (checked by `spirv-val`), MSL,
-//! HLSL and GLSL ES 3.10 (checked by `glslangValidator`). Prints a table, and what failed. The exit
-//! status is 1 if something failed that is not among the known gaps of GLSL ES.
+//! `translate FOLDER`: every `*.wgsl` file of the folder becomes SPIR-V (checked by `spirv-val`),
+//! MSL, HLSL and GLSL ES 3.10 (checked by `glslangValidator`). Prints a table, and what failed. The
+//! exit status is 1 if something failed that is not among the known gaps of GLSL ES.
 //!
 //! `translate --browser FOLDER`: every file is compiled by Chromium's WebGPU.
 

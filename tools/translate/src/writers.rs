@@ -48,7 +48,8 @@ const GAPS_OF_GLSL_ES: [&str; 5] = [
     BINDING_ARRAYS,
 ];
 
-/// Materials without bind groups use these where the adapter has them. naga's writer panics on them.
+/// Materials without bind groups use these where the adapter has them. naga's writer panics on
+/// them.
 const BINDING_ARRAYS: &str = "arrays of bindings";
 
 /// Whether a failure is one of the known gaps of GLSL ES.

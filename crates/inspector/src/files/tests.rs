@@ -33,7 +33,8 @@ fn a_name_alone_is_a_file_of_the_folder() {
     assert_eq!(of("/tmp/skin"), Some("/tmp/skin.toon.ron".into()));
 }
 
-/// A name without separators is a file in the folder, whatever it is; what is typed as a path is that path.
+/// A name without separators is a file in the folder, whatever it is; what is typed as a path is
+/// that path.
 #[test]
 fn a_file_of_any_name_is_handled() {
     const PARTS: [&str; 14] = [

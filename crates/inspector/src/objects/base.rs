@@ -35,8 +35,8 @@ struct Base {
     /// above 0.71. Range 0.089 to 1, default 0.5.
     #[reflect(@FieldRange::linear(0.089, 1.0))]
     perceptual_roughness: f32,
-    /// How much of a metal the surface is: highlights of metals have the colour of the surface. Range 0
-    /// to 1, default 0.
+    /// How much of a metal the surface is: highlights of metals have the colour of the surface.
+    /// Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     metallic: f32,
 }

@@ -1,4 +1,5 @@
-//! Reference of `depth/borders.wgsl`: the search by trying all pairs, and a view's borders over time.
+//! Reference of `depth/borders.wgsl`: the search by trying all pairs, and a view's borders over
+//! time.
 
 use super::histogram::{BINS, Bins};
 
@@ -38,7 +39,8 @@ impl Counted<'_> {
         0.5 * (edges[0] + edges[1])
     }
 
-    /// How much of the variance the bins of a class are, by the first of them and the one behind them.
+    /// How much of the variance the bins of a class are, by the first of them and the one behind
+    /// them.
     fn parts(&self) -> impl Fn(usize, usize) -> f64 {
         // Sums before each bin, so that a pair takes no loop.
         let mut before = vec![[0.0, 0.0]];

@@ -24,8 +24,8 @@ pub fn disc_coverage(distance: f64, half_width: f64) -> f64 {
     at(1.0).min(at(SHORTEST_RAMP))
 }
 
-/// The coverage by a segment, or by a dot. Pixels that are up to 0.43 of its length before or behind
-/// a segment count as beside it, from 0.57 as beside a dot, and between in proportion.
+/// The coverage by a segment, or by a dot. Pixels that are up to 0.43 of its length before or
+/// behind a segment count as beside it, from 0.57 as beside a dot, and between in proportion.
 pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [at[0] - a[0], at[1] - a[1]];

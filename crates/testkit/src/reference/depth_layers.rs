@@ -1,4 +1,5 @@
-//! Reference of `effects/depth_layers/depth_layers.wgsl`; that of `lines/cracks/planes.wgsl` has its name.
+//! Reference of `effects/depth_layers/depth_layers.wgsl`; that of `lines/cracks/planes.wgsl` has
+//! its name.
 
 use super::{
     Rgb,
@@ -49,8 +50,8 @@ pub fn color(s: &DepthLayers, linear: Rgb, weights: [f64; 3], change: f64) -> Rg
     in_gamut(oklab_to_linear(mixed), mixed[0], linear)
 }
 
-/// The weights of a pixel with [`LayerBorders::Fixed`](bevy_comics::effects::LayerBorders::Fixed): the mean
-/// over its samples.
+/// The weights of a pixel with [`LayerBorders::Fixed`](bevy_comics::effects::LayerBorders::Fixed):
+/// the mean over its samples.
 pub fn pixel_weights(s: &DepthLayers, view: &View, [x, y]: [u32; 2]) -> [f64; 3] {
     let near_end = f64::from(s.foreground_end);
     let borders = [near_end, f64::from(s.background_start).max(near_end)];

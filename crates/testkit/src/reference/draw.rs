@@ -100,8 +100,8 @@ impl Cracks {
         found
     }
 
-    /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends
-    /// are extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
+    /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends are
+    /// extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),

@@ -1,5 +1,6 @@
-//! Reference of `lines/link/link.wgsl`, `lines/link/join.wgsl` and `lines/link/settle.wgsl`: the cracks that are parts of lines,
-//! and how these run. A graph of cracks and of the corners of pixels that they end at.
+//! Reference of `lines/link/link.wgsl`, `lines/link/join.wgsl` and `lines/link/settle.wgsl`: the
+//! cracks that are parts of lines, and how these run. A graph of cracks and of the corners of
+//! pixels that they end at.
 
 use std::collections::{HashMap, HashSet};
 

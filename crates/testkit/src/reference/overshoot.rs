@@ -1,5 +1,5 @@
-//! Reference of `lines/draw/ends.wgsl`, `lines/draw/overshoot.wgsl` and `lines/draw/strokes.wgsl`: strokes that
-//! extend lines beyond their loose ends.
+//! Reference of `lines/draw/ends.wgsl`, `lines/draw/overshoot.wgsl` and `lines/draw/strokes.wgsl`:
+//! strokes that extend lines beyond their loose ends.
 
 use std::collections::HashSet;
 

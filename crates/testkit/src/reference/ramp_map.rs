@@ -2,8 +2,8 @@
 
 use super::{Rgb, mix};
 
-/// The mean of a row of tones between two fractions of it: what each texel covers of the interval. The
-/// first and the last texel go on beyond the ends.
+/// The mean of a row of tones between two fractions of it: what each texel covers of the interval.
+/// The first and the last texel go on beyond the ends.
 pub fn row_mean(row: &[Rgb], low: f64, high: f64) -> Rgb {
     let count = row.len() as f64;
     if high <= low {
@@ -40,7 +40,8 @@ pub fn tone(rows: &[Vec<Rgb>], detail: f64, arriving: f64, width: f64) -> Rgb {
     mean(rows, detail, arriving - 0.5 * width, arriving + 0.5 * width)
 }
 
-/// The same where the darker part of the pixel, `1 - lit` of it, is in the shadow of something else.
+/// The same where the darker part of the pixel, `1 - lit` of it, is in the shadow of something
+/// else.
 pub fn shadowed(rows: &[Vec<Rgb>], detail: f64, arriving: f64, width: f64, lit: f64) -> Rgb {
     let high = arriving + 0.5 * width;
     let bright = mean(rows, detail, high - lit * width, high);

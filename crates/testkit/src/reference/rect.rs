@@ -33,8 +33,8 @@ pub fn rect_light(half_right: Vec3, half_up: Vec3, at: Vec3, cells: usize) -> Ve
 }
 
 /// The point of the rectangle that a mirror at a place shows along a direction: where its ray meets
-/// the plane, moved to the nearest point inside along both axes. A ray that leaves the plane, or runs
-/// along it, shows the border that it points to.
+/// the plane, moved to the nearest point inside along both axes. A ray that leaves the plane, or
+/// runs along it, shows the border that it points to.
 pub fn mirrored(half_right: Vec3, half_up: Vec3, at: Vec3, direction: Vec3) -> Vec3 {
     let normal = [
         half_right[1] * half_up[2] - half_right[2] * half_up[1],

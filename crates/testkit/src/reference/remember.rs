@@ -1,5 +1,5 @@
-//! Reference of `lines/memory/remember.wgsl` and `lines/memory/memory.wgsl`: ink that remembers the frames
-//! before.
+//! Reference of `lines/memory/remember.wgsl` and `lines/memory/memory.wgsl`: ink that remembers the
+//! frames before.
 
 use super::{Rgb, edge::is_in_front};
 

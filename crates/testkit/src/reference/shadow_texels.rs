@@ -2,8 +2,8 @@
 
 use bevy::math::{DMat2, DVec2};
 
-/// The engine's Gaussian filter of flat shadow maps at a place in texels: nine bilinear samples, as it
-/// reads them. `texel`: the shadow in the texel with a column and a row.
+/// The engine's Gaussian filter of flat shadow maps at a place in texels: nine bilinear samples, as
+/// it reads them. `texel`: the shadow in the texel with a column and a row.
 pub fn filtered(texel: impl Fn(i64, i64) -> f64, at: DVec2) -> f64 {
     let bilinear = |at: DVec2| {
         let first = (at - 0.5).floor();

@@ -1,4 +1,5 @@
-//! Reference of `effect/sheet.wgsl` and `lines/modifiers/sheet.wgsl`: the surface of the sheet, and ink on it.
+//! Reference of `effect/sheet.wgsl` and `lines/modifiers/sheet.wgsl`: the surface of the sheet, and
+//! ink on it.
 
 use std::f64::consts::PI;
 

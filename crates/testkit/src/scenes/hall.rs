@@ -1,5 +1,5 @@
-//! The hall of an old house: stairs with railings, a gallery, and sun through tall windows. Lengths are in
-//! metres.
+//! The hall of an old house: stairs with railings, a gallery, and sun through tall windows. Lengths
+//! are in metres.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,7 +14,8 @@ use super::{
     sunlight,
 };
 
-/// Half the width of the hall, where it ends at the back, and the height of the gallery and the ceiling.
+/// Half the width of the hall, where it ends at the back, and the height of the gallery and the
+/// ceiling.
 const HALF: f32 = 6.0;
 const BACK: f32 = -6.5;
 const FRONT: f32 = 9.0;

@@ -184,7 +184,8 @@ pub fn lamplight(
     (ScenePart, light, Transform::from_translation(at))
 }
 
-/// Light with shadows that comes from a direction, such as that of the sun. `shadows`: their cascades.
+/// Light with shadows that comes from a direction, such as that of the sun. `shadows`: their
+/// cascades.
 pub fn sunlight(
     from: Vec3,
     illuminance: f32,

@@ -99,7 +99,8 @@ impl Shape {
         }
     }
 
-    /// A box of which `side` (-1 left, 1 right) is where +x is: `low` and `high` are for the right side.
+    /// A box of which `side` (-1 left, 1 right) is where +x is: `low` and `high` are for the right
+    /// side.
     pub fn beside(
         &mut self,
         side: f32,
@@ -210,7 +211,8 @@ impl Shape {
         }
     }
 
-    /// Adds triangles with smooth normals: each vertex has the mean of its triangles, by their areas.
+    /// Adds triangles with smooth normals: each vertex has the mean of its triangles, by their
+    /// areas.
     pub fn smooth(&mut self, points: &[Vec3], triangles: &[[u32; 3]], color: [f32; 4]) {
         let mut normals = vec![Vec3::ZERO; points.len()];
         for corners in triangles {

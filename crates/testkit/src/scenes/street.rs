@@ -18,8 +18,8 @@ const ROAD: f32 = 3.6;
 const FRONTS: f32 = 6.4;
 const STOREY: f32 = 3.1;
 
-/// Meshes of all that is lit, of what shines by itself, and of what is mixed over the picture: the colour of
-/// a vertex has its opacity.
+/// Meshes of all that is lit, of what shines by itself, and of what is mixed over the picture: the
+/// colour of a vertex has its opacity.
 #[derive(Default)]
 struct Parts {
     lit: Shape,
@@ -138,8 +138,8 @@ fn shop(parts: &mut Parts, random: &mut Random, side: f32, far: f32, near: f32) 
     }
 }
 
-/// A sign that stands out from a front. `marks`: dark bars on it, as `[x, y, width, height]` in parts of
-/// its face.
+/// A sign that stands out from a front. `marks`: dark bars on it, as `[x, y, width, height]` in
+/// parts of its face.
 fn sign(parts: &mut Parts, side: f32, low: Vec3, size: Vec2, color: u32, marks: &[[f32; 4]]) {
     let Parts { lit, shining, .. } = parts;
     let v = Vec3::new;

@@ -25,9 +25,9 @@ const PROFILES: [[[f32; 2]; 4]; 6] = [
 /// Length of the tangents of the cubic that stands for a quarter of the unit circle.
 const QUARTER: f32 = 0.56;
 
-/// Rows of control points of the two patches of the handle and of the spout, on one side of the plane of
-/// symmetry: place and height of the first two points, how far the middle two are aside, place and height of
-/// the last two. Both patches have the fourth row.
+/// Rows of control points of the two patches of the handle and of the spout, on one side of the
+/// plane of symmetry: place and height of the first two points, how far the middle two are aside,
+/// place and height of the last two. Both patches have the fourth row.
 const HANDLE: [[f32; 5]; 7] = [
     [-1.6, 2.025, -0.3, -1.5, 2.25],
     [-2.3, 2.025, -0.3, -2.5, 2.25],

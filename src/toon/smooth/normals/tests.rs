@@ -212,7 +212,8 @@ fn all_kinds_of_triangles_are_read() {
     assert_eq!(lines.err(), Some(Unsmoothed::NoTriangles));
 }
 
-/// Whatever a mesh has, its normals have unit length. Where nothing else is known, they are its own.
+/// Whatever a mesh has, its normals have unit length. Where nothing else is known, they are its
+/// own.
 #[test]
 fn strange_meshes_have_normals() {
     let up = [0.0, 1.0, 0.0];

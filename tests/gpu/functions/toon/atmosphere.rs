@@ -1,5 +1,5 @@
-//! What the atmosphere leaves of the sun. The engine's atmosphere crashes CPU adapters, so no picture
-//! shows it.
+//! What the atmosphere leaves of the sun. The engine's atmosphere crashes CPU adapters, so no
+//! picture shows it.
 
 use std::fs;
 

@@ -7,8 +7,8 @@ use crate::prelude::*;
 
 const PIECES: usize = 128;
 
-/// Of two lights, the colour, the direction and what arrives; a normal; what of the strength of the light
-/// is kept.
+/// Of two lights, the colour, the direction and what arrives; a normal; what of the strength of the
+/// light is kept.
 type Row = [f32; 18];
 
 const LIT: [usize; 2] = [6, 13];
@@ -57,7 +57,8 @@ fn with_lit(row: &Row, lit: [f64; 2]) -> Row {
     row
 }
 
-/// The largest channel that a row can have: that of all light, times the strength that the ramp gives it.
+/// The largest channel that a row can have: that of all light, times the strength that the ramp
+/// gives it.
 fn brightest(row: &Row) -> f64 {
     let color = |c: usize| f64::from(row[c] + row[7 + c]) / std::f64::consts::PI + 0.02;
     let all = [0, 1, 2].map(color);
@@ -65,8 +66,8 @@ fn brightest(row: &Row) -> f64 {
     strength * all.into_iter().fold(0.0, f64::max)
 }
 
-/// Truth: a pixel in which the borders of two shadows cross at right angles has the mean of 128 x 128
-/// pieces, in each of which either light arrives or does not.
+/// Truth: a pixel in which the borders of two shadows cross at right angles has the mean of 128 x
+/// 128 pieces, in each of which either light arrives or does not.
 #[test]
 fn crossing_borders_of_shadows_are_mixed_by_their_areas() {
     let mut n = Numbers::new(23);
@@ -77,8 +78,8 @@ fn crossing_borders_of_shadows_are_mixed_by_their_areas() {
         let lamps = [&first[..], &[0.0], &second, &[0.0]].concat();
         let row = [&lamps[..], &n.unit(), &[n.part()]].concat();
         let row = Row::try_from(row).expect("18 numbers");
-        // Borders through the pixel: x cos a + y sin a = c, and the other one at a right angle. Every
-        // second pair is parallel to the sides of the pixel.
+        // Borders through the pixel: x cos a + y sin a = c, and the other one at a right angle.
+        // Every second pair is parallel to the sides of the pixel.
         let angle = f64::from(n.within(0.0, 6.3));
         let (sin, cos) = if k % 2 == 0 {
             (0.0, 1.0)

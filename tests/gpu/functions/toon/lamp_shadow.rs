@@ -120,7 +120,8 @@ fn random_row(n: &mut Numbers) -> Row {
     };
     let mut step = || n.unit().map(|x| longest * n.part() * x);
     let steps = [step(), step()];
-    // At the ends of cascades, where the second one begins to replace the first, and behind the eye.
+    // At the ends of cascades, where the second one begins to replace the first, and behind the
+    // eye.
     let distance = match (n.part() * 8.0) as u32 {
         0 => FAR[0],
         1 => 0.75 * FAR[0],

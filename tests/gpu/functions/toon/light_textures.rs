@@ -1,10 +1,11 @@
-//! Where lights read their pictures. Adapters of tests may have no arrays of textures, so no picture
-//! shows it.
+//! Where lights read their pictures. Adapters of tests may have no arrays of textures, so no
+//! picture shows it.
 
 use bevy_comics_testkit::device::gpu;
 
-/// A spot light whose outer angle has the tangent 0.5 shines along -z: its axis is the middle of its
-/// picture, the border of its cone the border. The picture of a directional light is two units wide.
+/// A spot light whose outer angle has the tangent 0.5 shines along -z: its axis is the middle of
+/// its picture, the border of its cone the border. The picture of a directional light is two units
+/// wide.
 #[test]
 fn pictures_of_lights_fill_their_cones_and_squares() {
     let import = "#import bevy_comics::toon::light_textures::{directional_uv, is_beside, spot_uv}";

@@ -1,5 +1,5 @@
-//! Functions of the toon material that read bindings, against references: the shipped functions, with
-//! their uniforms, the view and the lights as variables.
+//! Functions of the toon material that read bindings, against references: the shipped functions,
+//! with their uniforms, the view and the lights as variables.
 
 mod atmosphere;
 mod borders;

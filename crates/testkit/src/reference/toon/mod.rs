@@ -1,5 +1,5 @@
-//! References of the modules of `toon/` that say what a surface reflects of the lights. Those of its
-//! pure functions lie beside this folder.
+//! References of the modules of `toon/` that say what a surface reflects of the lights. Those of
+//! its pure functions lie beside this folder.
 
 pub mod ambient;
 pub mod lamp_shadow;

@@ -123,8 +123,9 @@ impl Ramped<'_> {
         }
     }
 
-    /// The sum of all lights, each in its own tone. A ramp of absolute colours also colours light from
-    /// all around: in the mean of the tones by the brightness of their lights, or in the tone of shade.
+    /// The sum of all lights, each in its own tone. A ramp of absolute colours also colours light
+    /// from all around: in the mean of the tones by the brightness of their lights, or in the tone
+    /// of shade.
     fn per_light(&self, lights: &Lights) -> DVec3 {
         let toned = |sun: &Sun| sun.color * self.tone_of(sun) / PI;
         let direct: DVec3 = lights.suns.iter().map(toned).sum();
@@ -156,8 +157,8 @@ impl Ramped<'_> {
         lights.exposure * self.toned(self.tone_of(&key), key.color / PI, even)
     }
 
-    /// The tone of the fraction of all light that arrives, in the colour of all light, whose brightness
-    /// is raised to the power of `keep_intensity`.
+    /// The tone of the fraction of all light that arrives, in the colour of all light, whose
+    /// brightness is raised to the power of `keep_intensity`.
     fn light_fraction(&self, lights: &Lights) -> DVec3 {
         let all: f64 = lights.suns.iter().map(|sun| bright(sun.color)).sum();
         let mean = |of: &dyn Fn(&Sun) -> f64| {
