@@ -176,7 +176,7 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
         panic!("depth is not f32")
     };
     assert_eq!((name.as_str(), depth.len()), ("Z", 64 * 48));
-    let scan = range::scan(depth.into_iter()).expect("geometry");
+    let scan = range::scan(depth).expect("geometry");
     assert_eq!(frame["range"]["raw_bits"], json!(scan));
 
     // The pass changed the picture.

@@ -55,7 +55,7 @@ impl Stage {
     fn dash(&mut self, frames: usize) {
         let begin = self.seconds() as f32;
         let place = |t| Transform::from_xyz(-5.0 + SPEED * (t - begin), 0.0, 0.0);
-        self.fly(frames, place)
+        self.fly(frames, place);
     }
 
     /// Where the box is.

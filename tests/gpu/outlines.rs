@@ -78,7 +78,7 @@ const SCALES: [(f32, f32); 8] = [
     (1e3, 10.0),
 ];
 
-/// The depth buffer depends on the scale and on the near plane, and the constant k_p of the
+/// The depth buffer depends on the scale and on the near plane, and the constant `k_p` of the
 /// paper's equations fits only one.
 #[test]
 fn the_same_scene_has_the_same_outlines_at_any_scale() {

@@ -562,6 +562,44 @@ fn tone_bands_match_the_reference() {
     }
 }
 
+/// After the other effects of colour, over a background that shows through.
+#[test]
+fn every_mode_of_harmony_matches_the_reference() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);
+    small.insert(Camera {
+        clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
+        ..default()
+    });
+    let modes = [
+        (HarmonyMode::TwoHues, Equations::Corrected),
+        (HarmonyMode::Distance, Equations::Corrected),
+        (HarmonyMode::Distance, Equations::Faithful),
+        (HarmonyMode::Rotation, Equations::Corrected),
+        (HarmonyMode::Shade, Equations::Corrected),
+        (HarmonyMode::Shade, Equations::Faithful),
+    ];
+    for (mode, form) in modes {
+        for curve in [HarmonyCurve::Linear, HarmonyCurve::SquareRoot] {
+            let harmony = ColorHarmony {
+                mode,
+                equations: form,
+                curve,
+                complement: 1.2,
+                shade: 0.9,
+                ..default()
+            };
+            let desaturation = Desaturation {
+                amount: 0.3,
+                ..default()
+            };
+            let style = ComicStyle::new().with(desaturation).with(harmony);
+            let what = format!("{harmony:?}");
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
 /// A camera with a viewport smaller than its target.
 #[test]
 fn a_viewport_is_styled_inside_and_untouched_outside() {

@@ -279,14 +279,19 @@ fn a_grazing_plane_has_lines_at_its_horizon_alone() {
     let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
     for scale in SCALES {
         override_main_pass(&mut small, main_pass(scale));
-        for (name, style) in [
-            ("outlines", of(Outlines::default())),
-            ("contours", of(Contours::default())),
+        let wide = Contours {
+            width: 5.0,
+            ..default()
+        };
+        for (name, width, style) in [
+            ("outlines", 2.0, of(Outlines::default())),
+            ("contours", 2.0, of(Contours::default())),
+            ("wide contours", 5.0, of(wide)),
         ] {
             let ink = ink(&mut small, &style);
-            // Half a texel, the line of 2 px, and a pixel for the odd part of its width; the
-            // plane ends before the horizon, by 0.02 pixels.
-            let most = scale + 1.0 + 1.0;
+            // Half a texel, half the line, and a pixel for the odd part of its width; the plane
+            // ends before the horizon, by 0.02 pixels.
+            let most = scale + 0.5 * width + 1.0;
             let is_wrong = |(i, at): &(usize, Vec2)| {
                 ink[*i] > 0.02 && (at.y - horizon(&camera, at.x)).abs() > most
             };

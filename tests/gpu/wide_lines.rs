@@ -20,13 +20,14 @@ fn wide_lines_match_the_reference() {
     }
 }
 
-/// Runs near the diagonals are short, long, longer than is looked, and without an end; those of
-/// discs, and of squares on their corners, end at curves and corners.
+/// Runs near the axes are longer than the longest that is measured. Runs near the diagonals are
+/// short, long, longer than is looked, and without an end; those of discs, and of squares on their
+/// corners, end at curves and corners.
 #[test]
 fn lines_near_diagonals_match_the_reference() {
     let mut small = towards_the_sky(UVec2::splat(72));
     for quarter in [0.0, 90.0, 180.0, 270.0] {
-        for from_diagonal in [-6.3, 0.0, 0.9] {
+        for from_diagonal in [-44.0, -6.3, 0.0, 0.9] {
             let degrees: f32 = quarter + 45.0 + from_diagonal;
             small.clear();
             let turn = Quat::from_rotation_z(degrees.to_radians());

@@ -6,7 +6,7 @@
 //! [`Gpu::evaluate_shadows`](crate::device::Gpu::evaluate_shadows).
 
 /// Modules by name.
-pub const MODULES: [(&str, &str); 7] = [
+pub const MODULES: [(&str, &str); 9] = [
     ("bevy_pbr::mesh_bindings", MESH_BINDINGS),
     ("bevy_pbr::mesh_view_bindings", VIEW_BINDINGS),
     ("bevy_pbr::mesh_view_types", VIEW_TYPES),
@@ -14,6 +14,8 @@ pub const MODULES: [(&str, &str); 7] = [
     ("bevy_pbr::shadow_sampling", SHADOW_SAMPLING),
     ("bevy_render::maths", MATHS),
     ("bevy_pbr::lighting", LIGHTING),
+    ("bevy_pbr::raymarch", RAYMARCH),
+    ("bevy_pbr::view_transformations", TRANSFORMATIONS),
 ];
 
 /// Four meshes.
@@ -25,7 +27,9 @@ const MESH_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_bindings
 const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
     struct View {
         exposure: f32,
+        world_position: vec3<f32>,
         viewport: vec4<f32>,
+        world_from_view: mat4x4<f32>,
         clip_from_world: mat4x4<f32>,
         clip_from_view: mat4x4<f32>,
     }
@@ -111,4 +115,13 @@ const MATHS: &str = "#define_import_path bevy_render::maths
 /// Light textures import it, and nothing here runs it.
 const LIGHTING: &str = "#define_import_path bevy_pbr::lighting
     fn cubemap_uv(direction: vec3<f32>, order: u32) -> vec2<f32> { return direction.xy; }
+";
+
+/// Names that modules import beside the functions that are tested.
+const RAYMARCH: &str = "#define_import_path bevy_pbr::raymarch
+    struct DepthRayMarchResult { hit: bool, hit_penetration_frac: f32 }
+";
+
+const TRANSFORMATIONS: &str = "#define_import_path bevy_pbr::view_transformations
+    fn position_world_to_ndc(at: vec3<f32>) -> vec3<f32> { return at; }
 ";

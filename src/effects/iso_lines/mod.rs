@@ -54,7 +54,7 @@ pub struct IsoLines {
     pub opacity: f32,
 }
 
-/// What is equal along an [iso-line](IsoLines).
+/// What is equal along a line of [`IsoLines`].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]

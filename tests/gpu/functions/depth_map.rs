@@ -134,7 +134,7 @@ fn the_linear_map_and_its_steps_are_exact() {
     }
 }
 
-/// WGSL allows an error of 3 ulp for log() and of 2.5 ulp for a division; the map uses two of each.
+/// WGSL allows an error of 3 ulp for `log()` and of 2.5 ulp for a division; the map uses two of each.
 /// An orthographic map takes logarithms of distances that are rounded already, which needs an
 /// absolute tolerance.
 #[test]

@@ -30,3 +30,41 @@ fn signs_of_degenerate_directions_are_finite() {
         assert!(found.iter().all(|x| x.is_finite()), "{row:?}: {found:?}");
     }
 }
+
+/// Truth: along a small movement, the direction to a place changes as it should. The rest is of the
+/// second order, and what single precision rounds.
+#[test]
+fn directions_swing_with_movements() {
+    let import = "#import bevy_comics::toon::stylized_highlight_light::swing";
+    let body = "let to = vec3(i(0u), i(1u), i(2u));
+         return vec4(swing(to, vec3(i(3u), i(4u), i(5u)), i(6u)), 0.0);";
+    let mut n = Numbers::new(50);
+    let rows: Vec<[f32; 7]> = (0..1000)
+        .map(|_| {
+            let [to, movement] = [n.unit(), n.unit().map(|x| 0.01 * x)];
+            let near = n.within(0.05, 2.0);
+            [
+                to[0],
+                to[1],
+                to[2],
+                movement[0],
+                movement[1],
+                movement[2],
+                near,
+            ]
+        })
+        .collect();
+    for (row, found) in rows
+        .iter()
+        .zip(gpu().evaluate_alone(&[], import, body, &rows))
+    {
+        let vector = |at: usize| DVec3::new(row[at].into(), row[at + 1].into(), row[at + 2].into());
+        let (to, movement) = (vector(0).normalize(), vector(3));
+        let distance = f64::from(row[6]).recip();
+        let change = (distance * to - movement).normalize() - to;
+        let swing = DVec3::new(found[0].into(), found[1].into(), found[2].into());
+        let part = movement.length() / distance;
+        let apart = (change - swing).length();
+        assert!(apart < 2.0 * part * part + 1e-6 * part, "{row:?}: {apart}");
+    }
+}

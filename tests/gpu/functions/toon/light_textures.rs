@@ -31,3 +31,17 @@ fn pictures_of_lights_fill_their_cones_and_squares() {
         }
     }
 }
+
+/// Three quarters of the thickness of a surface are dark; all is lit behind that.
+#[test]
+fn contact_shadows_end_behind_thin_things() {
+    let import = "#import bevy_comics::toon::contact::contact_left";
+    let body = "return vec4(contact_left(true, i(0u)), contact_left(false, i(0u)), 0.0, 0.0);";
+    let rows = [[-1.0f32], [0.0], [0.5], [0.6], [0.75], [1.0], [3.0]];
+    let results = gpu().evaluate_alone(&[], import, body, &rows);
+    for ([behind], found) in rows.iter().zip(results) {
+        let left = if *behind < 0.75 { 0.0 } else { 1.0 };
+        assert_eq!(found[0], left, "{behind}");
+        assert_eq!(found[1], 1.0);
+    }
+}
