@@ -26,9 +26,9 @@ impl DepthAxis {
     ///
     /// `clip_from_view` is [`Camera::clip_from_view`](bevy::camera::Camera::clip_from_view),
     /// `projection` the camera's component, if it has one, and `visible` the distances of the near
-    /// and the far end of the visible range, such as [`DepthHistogram::drawn`]. Returns `None` if
-    /// the map depends on the visible range and that is not known, or if the map tells no distances
-    /// apart.
+    /// and the far end of the visible range, such as
+    /// [`DepthHistogram::drawn`](super::DepthHistogram::drawn). Returns `None` if the map depends
+    /// on the visible range and that is not known, or if the map tells no distances apart.
     pub fn new(
         map: &DepthMap,
         clip_from_view: &Mat4,

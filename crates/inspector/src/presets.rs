@@ -159,7 +159,7 @@ impl Presets {
             self.source = Some(camera);
             self.refresh(world, folder);
         }
-        ui.horizontal_wrapped(|ui| {
+        ui.vertical(|ui| {
             if button(
                 ui,
                 widgets,
