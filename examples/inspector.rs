@@ -16,7 +16,7 @@ use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     panel_state::panel_state,
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
-    studio::{set_toon, wear},
+    studio::{set_style, set_toon},
 };
 
 const HELP: &str = "\
@@ -193,7 +193,7 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
             Msaa::Off,
             RenderLayers::default(),
         ));
-        wear(&mut camera, &options.style);
+        set_style(&mut camera, &options.style);
     }
 }
 

@@ -21,7 +21,7 @@ use bevy_comics_testkit::{
     demo::{Demo, Screen},
     headless::{Headless, new_target},
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
-    studio::{set_toon, wear},
+    studio::{set_style, set_toon},
 };
 
 /// How much larger a photo is than the window.
@@ -65,7 +65,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
         Msaa::Sample4,
         Photographer { look: 0 },
     ));
-    wear(&mut camera, &STYLES[0].style());
+    set_style(&mut camera, &STYLES[0].style());
     stage
         .commands
         .queue(|world: &mut World| set_toon(world, true));
@@ -109,7 +109,7 @@ fn choose_look(
     let (entity, photographer) = &mut *camera;
     photographer.look = (photographer.look + step) % STYLES.len();
     let style = STYLES[photographer.look].style();
-    wear(&mut commands.entity(*entity), &style);
+    set_style(&mut commands.entity(*entity), &style);
 }
 
 /// Moves the camera by the clock that does not stand still.

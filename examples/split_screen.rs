@@ -7,7 +7,7 @@ use bevy_comics::{Outlines, ToonScene, presets};
 use bevy_comics_testkit::{
     demo::{Demo, Screen},
     scenes::{BuiltIn, ScenePart, Stage},
-    studio::wear,
+    studio::set_style,
 };
 
 /// 0 is the left player, 1 the right one.
@@ -33,7 +33,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
         };
         let mut view = stage.commands.spawn(vantage.camera());
         view.insert((Player(player), camera, screen.target.clone(), Msaa::Sample4));
-        wear(&mut view, look);
+        set_style(&mut view, look);
     }
 }
 

@@ -10,7 +10,7 @@ use bevy_comics_testkit::{
     demo::{Demo, Screen},
     headless::Headless,
     scenes::{BuiltIn, ScenePart, Stage},
-    studio::wear,
+    studio::set_style,
 };
 use image::RgbaImage;
 
@@ -61,7 +61,7 @@ fn dress(
             Some((weight, _, volume)) => outside.style.blend(&volume.style, weight),
             None => outside.style.clone(),
         };
-        wear(&mut commands.entity(camera), &style);
+        set_style(&mut commands.entity(camera), &style);
     }
 }
 

@@ -13,7 +13,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     headless::new_target,
     scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage, paper_plane::paper_plane},
-    studio::wear,
+    studio::set_style,
 };
 
 use crate::page::PANELS;
@@ -115,7 +115,7 @@ pub fn spawn(world: &mut World) {
         let mut camera = world.spawn((vantage.camera(), order, target, Msaa::Sample4));
         camera.insert((at, layers, ambient.clone()));
         let camera = camera.id();
-        wear(&mut world.commands().entity(camera), &(view.style)());
+        set_style(&mut world.commands().entity(camera), &(view.style)());
         if let Some((from_eye, size)) = view.plane {
             fold_plane(world, at, from_eye, size, RenderLayers::layer(own));
         }

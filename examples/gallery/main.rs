@@ -15,7 +15,7 @@ use bevy_comics_inspector::ComicsInspectorPlugin;
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage, figure::motion::MotionPlugin},
-    studio::wear,
+    studio::set_style,
 };
 use split::Split;
 
@@ -155,7 +155,7 @@ fn preset(index: usize) -> Preset {
 }
 
 fn apply(commands: &mut Commands, camera: Entity, index: usize) {
-    wear(&mut commands.entity(camera), &preset(index).style());
+    set_style(&mut commands.entity(camera), &preset(index).style());
 }
 
 #[derive(SystemParam)]

@@ -34,10 +34,11 @@ pub(super) fn build_render(app: &mut App) {
     );
 }
 
-/// Sets or removes [`NO_DEPTH_LOADS`] when the shader is loaded, or loaded again, and when a device
-/// was lost and the app goes on with another adapter.
+/// Sets or removes [`NO_DEPTH_LOADS`] when the shader is loaded, or loaded again, and when the
+/// app gets another adapter after a lost device.
 ///
-/// What makes pipelines of materials knows no adapter, but each app has a shader of its own.
+/// The function that specializes pipelines of materials does not know the adapter, but each app has a
+/// shader of its own.
 fn follow_adapter(
     adapter: Res<RenderAdapterInfo>,
     shader: Res<RimShader>,

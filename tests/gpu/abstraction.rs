@@ -27,7 +27,7 @@ fn before_white(mut small: Small) -> Small {
 }
 
 /// Draws with a style over the depth from 1 to 101 units.
-fn wear(small: &mut Small, style: ComicStyle) {
+fn set_style(small: &mut Small, style: ComicStyle) {
     small.style(&with_map(style, hundred(false)));
 }
 
@@ -99,7 +99,7 @@ fn far_things_are_paler_and_have_fewer_tones() {
             ..default()
         };
         let style = ComicStyle::new().with(bands(2)).with(split);
-        wear(&mut small, style);
+        set_style(&mut small, style);
         let found = seen(&mut small);
         for (card, levels) in [8, 2].into_iter().enumerate() {
             small.style(&ComicStyle::new().with(bands(levels)));
@@ -151,7 +151,7 @@ fn sharp() -> Outlines {
 fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
     let fronts = cards(small, [1.2, 75.0], step);
     let style = ComicStyle::new().with(sharp());
-    wear(small, style.clone());
+    set_style(small, style.clone());
     let without = ink(small);
     for (front, level) in fronts.into_iter().zip(levels.into_iter().flatten()) {
         let own = ObjectAbstraction::fixed(level);
@@ -161,7 +161,7 @@ fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 
         line_threshold: 8.0,
         ..default()
     };
-    wear(small, style.with(abstraction));
+    set_style(small, style.with(abstraction));
     [without, ink(small)]
 }
 
@@ -218,7 +218,7 @@ fn objects_have_colors_of_their_own_level() {
                 ..abstraction
             })
         };
-        wear(&mut small, style(Granularity::Object));
+        set_style(&mut small, style(Granularity::Object));
         let fixed = ObjectAbstraction::fixed;
         for reversed in [[fixed(1.0), fixed(0.0)], [offset(1.0), offset(-1.0)]] {
             let found = levels(&mut small, reversed);
@@ -243,7 +243,7 @@ fn objects_have_colors_of_their_own_level() {
         let found = seen(&mut small).map(spread);
         assert!(found[0] <= 1 && found[1].abs_diff(plain) <= 1, "{found:?}");
         // Where every pixel is on its own, there are no objects.
-        wear(&mut small, style(Granularity::Pixel));
+        set_style(&mut small, style(Granularity::Pixel));
         let found = seen(&mut small).map(spread);
         assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
         assert_eq!(small.errors(), 0);
@@ -262,7 +262,7 @@ fn lines_of_an_object_follow_its_centre() {
         ..default()
     };
     let style = ComicStyle::new().with(sharp()).with(abstraction);
-    wear(&mut small, style);
+    set_style(&mut small, style);
     let mut has_line = |step: u32, whole: bool, card: usize| {
         let fronts = cards(&mut small, [30.0, 50.0], 0.002 * step as f32);
         if whole {
@@ -326,7 +326,7 @@ fn tones_split_without_popping() {
         ..default()
     };
     let style = ComicStyle::new().with(bands).with(abstraction);
-    wear(&mut small, style);
+    set_style(&mut small, style);
     let seen_at = |small: &mut Small, d: f32| {
         let away = 1.0 + 100.0 * d;
         let at = Transform::from_xyz(0.0, 0.0, -away).with_scale(Vec3::splat(away));

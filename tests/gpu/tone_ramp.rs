@@ -1,6 +1,6 @@
 //! Tones of the picture by depth.
 
-use bevy_comics_testkit::{reference::tone_ramp, studio::wear};
+use bevy_comics_testkit::{reference::tone_ramp, studio::set_style};
 
 use crate::{pictures::check, prelude::*, ramp::room};
 
@@ -95,7 +95,7 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     small.clear();
     let style = ComicStyle::new().with(ramp);
     let camera = small.camera;
-    wear(&mut small.world().commands().entity(camera), &style);
+    set_style(&mut small.world().commands().entity(camera), &style);
     small.world().flush();
     let worn = small.headless.app.world().get::<DebandDither>(camera);
     assert_eq!(worn, Some(&DebandDither::Disabled));

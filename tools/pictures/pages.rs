@@ -16,7 +16,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     scenes::BuiltIn,
-    studio::{Studio, wear},
+    studio::{Studio, set_style},
 };
 use image::RgbaImage;
 
@@ -197,11 +197,11 @@ fn split_screen() -> RgbaImage {
     let mut eye = studio.vantage.transform();
     eye.rotate_around(studio.vantage.target, Quat::from_rotation_y(0.5));
     world.entity_mut(second).insert(eye);
-    wear(
+    set_style(
         &mut world.commands().entity(studio.camera),
         &presets::GRAPHIC_NOVEL.style(),
     );
-    wear(
+    set_style(
         &mut world.commands().entity(second),
         &presets::TWILIGHT_TOON.style(),
     );

@@ -22,7 +22,7 @@ use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{self, Headless, HeadlessOptions},
     scenes::{BuiltIn, Stage, Vantage, figure::motion::MotionPlugin},
-    studio::{set_sections, set_toon, wear},
+    studio::{set_sections, set_style, set_toon},
 };
 use model::Model;
 
@@ -145,7 +145,7 @@ fn spawn_camera(headless: &mut Headless, arguments: &Arguments, vantage: &Vantag
     }
     let camera = camera.id();
     if let Some(style) = &arguments.style {
-        wear(&mut world.commands().entity(camera), style);
+        set_style(&mut world.commands().entity(camera), style);
         world.flush();
     }
     camera

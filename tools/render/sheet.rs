@@ -6,7 +6,7 @@ use image::{Rgba, RgbaImage, imageops};
 
 use bevy_comics_testkit::{
     headless::{Headless, new_target},
-    studio::wear,
+    studio::set_style,
 };
 
 /// Updates until a change of style is complete.
@@ -32,7 +32,7 @@ pub fn shoot(headless: &mut Headless, camera: Entity, presets: &[Preset]) -> Rgb
     let mut cells = Vec::new();
     for ((name, style), label) in looks.iter().zip(labels) {
         let world = headless.app.world_mut();
-        wear(&mut world.commands().entity(camera), style);
+        set_style(&mut world.commands().entity(camera), style);
         world.flush();
         headless.step(SETTLE);
         cells.push((headless.picture(), label));

@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
 };
 
 /// A short flight through a scene.
@@ -161,7 +161,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
             Some(vantage) => (vantage.transform(), vantage.target),
             None => (Transform::IDENTITY, Vec3::new(0.0, 0.0, -4.0)),
         };
-        rig.wear(&Wear::Nothing);
+        rig.set_drawn(&Drawn::Nothing);
         let camera = rig.camera;
         let world = rig.headless.app.world_mut();
         world

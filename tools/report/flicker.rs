@@ -21,7 +21,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     capture::{self, Shot, shoot},
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -169,7 +169,7 @@ fn play(name: &str, size: UVec2) -> Sequence {
         BuiltIn::Teapot
     };
     let mut rig = Rig::new(Some(scene), size);
-    rig.wear(&Wear::Nothing);
+    rig.set_drawn(&Drawn::Nothing);
     let camera = rig.camera;
     let vantage = rig.vantage.clone().expect("a built-in scene");
     let from = vantage.transform();

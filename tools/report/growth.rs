@@ -9,14 +9,14 @@ use crate::{
     Run,
     costs::GROWING,
     ladder::ball,
-    rig::{self, Rig, Wear},
+    rig::{self, Drawn, Rig},
     table::Table,
 };
 
 pub fn measure(run: &Run) -> Result<(), String> {
     // Large pictures take long, and their times vary little.
     let few = run.with_rounds(run.rounds.min(3));
-    let comic = [(GROWING.to_owned(), Wear::style(default_comic()))];
+    let comic = [(GROWING.to_owned(), Drawn::style(default_comic()))];
     // The same with a pass fewer, and a style of one pass.
     let fewer = [
         (
@@ -34,7 +34,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             ComicStyle::new().with(Colorization::SEPIA),
         ),
     ];
-    let fewer = fewer.map(|(name, style)| (name.to_owned(), Wear::style(style)));
+    let fewer = fewer.map(|(name, style)| (name.to_owned(), Drawn::style(style)));
     let by_pixels = [&comic[..], &fewer].concat();
     let mut times = rig::times();
     let sizes: &[(u32, u32)] = if run.quick {
@@ -110,11 +110,11 @@ fn paper(run: &Run) -> Result<(), String> {
     ball(&mut rig, vertices);
     let rounds = if run.quick { 3 } else { 20 };
     for round in 0..=rounds {
-        for (name, wear) in [
-            ("without the model", Wear::Nothing),
-            ("with the model", Wear::style(default_comic())),
+        for (name, drawn) in [
+            ("without the model", Drawn::Nothing),
+            ("with the model", Drawn::style(default_comic())),
         ] {
-            rig.wear(&wear);
+            rig.set_drawn(&drawn);
             rig.headless.step(3);
             let ms = bench::whole_frame(&mut rig.headless);
             if round > 0 {

@@ -22,7 +22,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     models::Studio,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     steps,
     table::Table,
 };
@@ -237,13 +237,13 @@ pub fn memory(run: &Run) -> Result<(), String> {
     };
     let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
     let lines = |history_weight: f32| {
-        Wear::style(ComicStyle::new().with(Outlines {
+        Drawn::style(ComicStyle::new().with(Outlines {
             history_weight,
             ..default()
         }))
     };
     let methods = [
-        ("no lines", Wear::Nothing),
+        ("no lines", Drawn::Nothing),
         ("no history", lines(0.0)),
         ("history", lines(0.875)),
     ];
@@ -256,8 +256,8 @@ pub fn memory(run: &Run) -> Result<(), String> {
             DepthPrepass,
             NormalPrepass,
         ));
-        for (method, wear) in &methods {
-            rig.wear(wear);
+        for (method, drawn) in &methods {
+            rig.set_drawn(drawn);
             rig.headless.step(settled);
             let mut before = rig.headless.picture();
             let mut changed = 0;

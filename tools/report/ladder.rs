@@ -12,7 +12,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{self, Rig, Wear},
+    rig::{self, Drawn, Rig},
     table::Table,
 };
 
@@ -173,9 +173,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     } else {
         UVec2::new(1280, 720)
     };
-    let variants: Vec<(String, Wear)> = styles
+    let variants: Vec<(String, Drawn)> = styles
         .iter()
-        .map(|(name, style)| (name.replace(',', ";"), Wear::style(style.clone())))
+        .map(|(name, style)| (name.replace(',', ";"), Drawn::style(style.clone())))
         .collect();
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);

@@ -7,7 +7,7 @@ use bevy_comics_testkit::{scenes::BuiltIn, work::default_comic};
 
 use crate::{
     Run, capture,
-    rig::{self, Rig, Wear},
+    rig::{self, Drawn, Rig},
     scores::{detectors, score},
     table::Table,
 };
@@ -69,7 +69,7 @@ fn smooth(run: &Run) -> Result<(), String> {
     let mut table = Table::new(&["what", "method", "flip", "codes"]);
     let picture = |size: UVec2, style: ComicStyle| {
         let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
-        rig.wear(&Wear::style(style));
+        rig.set_drawn(&Drawn::style(style));
         rig.headless.step(4);
         rig.headless.picture()
     };
@@ -127,10 +127,10 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
-    let mut variants: Vec<(String, Wear)> = run
+    let mut variants: Vec<(String, Drawn)> = run
         .some(2, detectors())
         .into_iter()
-        .map(|(name, style)| (name, Wear::style(style)))
+        .map(|(name, style)| (name, Drawn::style(style)))
         .collect();
     for (name, style) in [
         ("default comic", default_comic()),
@@ -139,19 +139,19 @@ pub fn measure(run: &Run) -> Result<(), String> {
         ("contours hard", soft_contours(1.0, 0.0)),
         ("contours derivative", soft_contours(1.0, 0.5)),
     ] {
-        variants.push((name.to_owned(), Wear::style(style)));
+        variants.push((name.to_owned(), Drawn::style(style)));
     }
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &variants);
     // Twice the width and height: the cost of 2x2 samples.
     let mut fine = Rig::new(Some(BuiltIn::Teapot), size * 2);
     fine.unlight();
     let variants = [
-        ("tone bands hard".to_owned(), Wear::style(bands(0.0))),
+        ("tone bands hard".to_owned(), Drawn::style(bands(0.0))),
         (
             "contours hard".to_owned(),
-            Wear::style(soft_contours(2.0, 0.0)),
+            Drawn::style(soft_contours(2.0, 0.0)),
         ),
-        ("silhouettes".to_owned(), Wear::style(soft_outlines(2.0))),
+        ("silhouettes".to_owned(), Drawn::style(soft_outlines(2.0))),
     ];
     rig::record(run, &mut times, "2x2", "teapot", &mut fine, &variants);
     run.save("line_times", &times)

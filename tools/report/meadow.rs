@@ -10,7 +10,7 @@ use image::RgbaImage;
 use crate::{
     Run,
     ink::whiten,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::{Table, largest},
 };
 
@@ -91,7 +91,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             ..lines
         };
         let [own, free] = [lines, free].map(|lines| {
-            rig.wear(&Wear::style(alone.clone().with(lines)));
+            rig.set_drawn(&Drawn::style(alone.clone().with(lines)));
             rig.headless.step(4);
             let areas = covered(&rig.headless.picture());
             let mean = areas.iter().sum::<f64>() / areas.len().max(1) as f64;

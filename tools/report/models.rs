@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -32,7 +32,7 @@ pub struct Studio {
 impl Studio {
     pub fn new(size: UVec2, outlines: Outlines) -> Self {
         let mut rig = Rig::new(None, size);
-        rig.wear(&Wear::style(ComicStyle::new().with(outlines)));
+        rig.set_drawn(&Drawn::style(ComicStyle::new().with(outlines)));
         let world = rig.headless.app.world_mut();
         world.insert_resource(ClearColor(Color::WHITE));
         world

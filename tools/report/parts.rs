@@ -17,11 +17,11 @@ use bevy_comics_testkit::scenes::BuiltIn;
 
 use crate::{
     Run, page_styles,
-    rig::{self, Rig, Wear},
+    rig::{self, Drawn, Rig},
 };
 
 /// Outlines of which one thing differs from the default.
-fn lines() -> Vec<(String, Wear)> {
+fn lines() -> Vec<(String, Drawn)> {
     let default = Outlines::default();
     [
         ("outlines", default),
@@ -82,7 +82,7 @@ fn lines() -> Vec<(String, Wear)> {
     .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
     .into_iter()
     .chain([("and depth layers", layer_lines())])
-    .map(|(name, style)| (name.to_owned(), Wear::style(style)))
+    .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
     .collect()
 }
 
@@ -94,10 +94,10 @@ fn layer_lines() -> ComicStyle {
 }
 
 /// Effects of the page.
-fn page() -> Vec<(String, Wear)> {
+fn page() -> Vec<(String, Drawn)> {
     page_styles::all()
         .into_iter()
-        .map(|(name, style)| (name.to_owned(), Wear::style(style)))
+        .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
         .collect()
 }
 
@@ -129,11 +129,11 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let styles = run.some(4, page());
     rig::record(run, &mut times, "page", "teapot", &mut rig, &styles);
     let variants = [
-        ("nothing marked", Wear::Nothing),
-        ("selected", Wear::Selected),
-        ("seen through walls", Wear::SeenThrough),
+        ("nothing marked", Drawn::Nothing),
+        ("selected", Drawn::Selected),
+        ("seen through walls", Drawn::SeenThrough),
     ]
-    .map(|(name, wear)| (name.to_owned(), wear));
+    .map(|(name, drawn)| (name.to_owned(), drawn));
     rig::record(run, &mut times, "marks", "teapot", &mut rig, &variants);
     run.save("part_times", &times)
 }
@@ -228,7 +228,7 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
         let mut changed = part.rig(run, part.change);
         let mut base = part.base.map(|change| part.rig(run, change));
         let named =
-            |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Wear::style(style.clone()));
+            |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Drawn::style(style.clone()));
         let variants: Vec<_> = part.styles.iter().map(named).collect();
         let scene = part.scene.name();
         for _ in 0..rounds {
@@ -349,7 +349,7 @@ fn unstyled(rig: &mut Rig) {
 }
 
 /// Marks the meshes of the scene as a variant asks.
-pub fn set_marks(rig: &mut Rig, wear: &Wear) {
+pub fn set_marks(rig: &mut Rig, drawn: &Drawn) {
     let world = rig.headless.app.world_mut();
     let mut marked =
         world.query_filtered::<Entity, Or<(With<SelectionOutline>, With<XRayOutline>)>>();
@@ -359,9 +359,9 @@ pub fn set_marks(rig: &mut Rig, wear: &Wear) {
             .entity_mut(mesh)
             .remove::<(SelectionOutline, XRayOutline)>();
     }
-    match wear {
-        Wear::Selected => mark(rig, SelectionOutline::default()),
-        Wear::SeenThrough => mark(rig, XRayOutline::default()),
+    match drawn {
+        Drawn::Selected => mark(rig, SelectionOutline::default()),
+        Drawn::SeenThrough => mark(rig, XRayOutline::default()),
         _ => {}
     }
 }

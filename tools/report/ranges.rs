@@ -14,7 +14,7 @@ use crate::{
     Run,
     bare::{self, Blit, time, upload, view, words},
     capture::{self, Capture, Shot},
-    rig::{self, Rig, Wear},
+    rig::{self, Drawn, Rig},
     table::Table,
 };
 
@@ -250,9 +250,9 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
     table
 }
 
-fn tinted_by(map: DepthMap) -> Wear {
+fn tinted_by(map: DepthMap) -> Drawn {
     let tint = ComicStyle::new().with(Colorization::default());
-    Wear::style(with_map(tint, map))
+    Drawn::style(with_map(tint, map))
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -280,7 +280,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         ReductionMethod::SharedMemory,
         ReductionMethod::PingPong,
     ];
-    let mut variants: Vec<(String, Wear)> = reductions
+    let mut variants: Vec<(String, Drawn)> = reductions
         .into_iter()
         .map(|reduction| {
             let map = DepthMap {

@@ -30,7 +30,7 @@ pub struct Rig {
 
 /// What a camera draws while it is timed.
 #[derive(Clone, Debug)]
-pub enum Wear {
+pub enum Drawn {
     Nothing,
     Blit,
     Style(Box<ComicStyle>),
@@ -40,7 +40,7 @@ pub enum Wear {
     SeenThrough,
 }
 
-impl Wear {
+impl Drawn {
     pub fn style(style: ComicStyle) -> Self {
         Self::Style(Box::new(style))
     }
@@ -104,19 +104,19 @@ impl Rig {
         }
     }
 
-    pub fn wear(&mut self, wear: &Wear) {
-        set_marks(self, wear);
+    pub fn set_drawn(&mut self, drawn: &Drawn) {
+        set_marks(self, drawn);
         let world = self.headless.app.world_mut();
         let none = ComicStyle::default();
-        let style = match wear {
-            Wear::Style(style) => style,
+        let style = match drawn {
+            Drawn::Style(style) => style,
             _ => &none,
         };
         for camera in std::iter::once(&self.camera).chain(&self.others) {
             style.apply(&mut world.commands().entity(*camera));
             world.flush();
-            match wear {
-                Wear::Blit => world.entity_mut(*camera).insert(Blit),
+            match drawn {
+                Drawn::Blit => world.entity_mut(*camera).insert(Blit),
                 _ => world.entity_mut(*camera).remove::<Blit>(),
             };
         }
@@ -124,12 +124,12 @@ impl Rig {
 
     /// The laps of every variant, round by round. The laps of a round are the medians of its
     /// frames.
-    pub fn compare(&mut self, run: &Run, variants: &[(String, Wear)]) -> Vec<Vec<Laps>> {
+    pub fn compare(&mut self, run: &Run, variants: &[(String, Drawn)]) -> Vec<Vec<Laps>> {
         let mut all = vec![Vec::new(); variants.len()];
         // Round 0 creates pipelines and textures, and is not counted.
         for round in 0..=run.rounds {
-            for (i, (_, wear)) in variants.iter().enumerate() {
-                self.wear(wear);
+            for (i, (_, drawn)) in variants.iter().enumerate() {
+                self.set_drawn(drawn);
                 // A new prepass takes one frame, new pipelines and textures another.
                 self.headless.step(2);
                 let frames = bench::laps(&mut self.headless, run.frames);
@@ -164,14 +164,14 @@ pub fn record(
     section: &str,
     scene: &str,
     rig: &mut Rig,
-    variants: &[(String, Wear)],
+    variants: &[(String, Drawn)],
 ) {
     let mut all = vec![
-        ("nothing".to_owned(), Wear::Nothing),
-        ("blit".to_owned(), Wear::Blit),
+        ("nothing".to_owned(), Drawn::Nothing),
+        ("blit".to_owned(), Drawn::Blit),
     ];
     all.extend(variants.iter().cloned());
-    all.push(("blit again".to_owned(), Wear::Blit));
+    all.push(("blit again".to_owned(), Drawn::Blit));
     let laps = rig.compare(run, &all);
     for ((name, _), rounds) in all.iter().zip(&laps) {
         for (round, laps) in rounds.iter().enumerate() {

@@ -13,7 +13,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -70,7 +70,7 @@ pub fn detectors() -> Vec<(String, ComicStyle)> {
 fn truth(scene: BuiltIn, size: UVec2, fine: u32) -> Truth {
     let mut rig = Rig::new(Some(scene), size * fine);
     rig.unlight();
-    rig.wear(&Wear::style(ComicStyle::new().with(ids_alone())));
+    rig.set_drawn(&Drawn::style(ComicStyle::new().with(ids_alone())));
     let world = rig.headless.app.world_mut();
     world
         .entity_mut(rig.camera)
@@ -114,11 +114,11 @@ pub fn score(run: &Run) -> Result<(), String> {
         };
         let mut rig = Rig::new(Some(scene), size);
         rig.unlight();
-        rig.wear(&Wear::Nothing);
+        rig.set_drawn(&Drawn::Nothing);
         rig.headless.step(4);
         let plain = rig.headless.picture();
         for (name, style) in detectors() {
-            rig.wear(&Wear::style(style));
+            rig.set_drawn(&Drawn::style(style));
             rig.headless.step(4);
             push(&name, &mask(&plain, &rig.headless.picture()));
         }
@@ -145,10 +145,10 @@ fn whole(run: &Run, scenes: &[BuiltIn]) -> Result<(), String> {
     for scene in scenes {
         let mut rig = Rig::new(Some(*scene), size);
         rig.unlight();
-        rig.wear(&Wear::Nothing);
+        rig.set_drawn(&Drawn::Nothing);
         rig.headless.step(4);
         let plain = rig.headless.picture();
-        rig.wear(&Wear::style(ComicStyle::new().with(thin)));
+        rig.set_drawn(&Drawn::style(ComicStyle::new().with(thin)));
         rig.headless.step(4);
         let mask = mask(&plain, &rig.headless.picture());
         let line = mask.iter().filter(|ink| **ink).count();

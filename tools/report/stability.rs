@@ -14,7 +14,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run, capture,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -328,7 +328,7 @@ fn rendered(table: &mut Table, run: &Run) {
         world.entity_mut(rig.camera).insert(Hdr);
         let (mut wild_in, mut wild_out) = (0, 0);
         let mut wild = |style: &ComicStyle| {
-            rig.wear(&Wear::style(style.clone()));
+            rig.set_drawn(&Drawn::style(style.clone()));
             rig.headless.step(4);
             let view = rig.view();
             let world = rig.headless.app.sub_app(RenderApp).world();
@@ -381,7 +381,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         world
             .entity_mut(rig.camera)
             .insert(Projection::Perspective(planes));
-        rig.wear(&Wear::style(everything()));
+        rig.set_drawn(&Drawn::style(everything()));
         rig.headless.step(4);
         let picture = rig.headless.picture();
         let codes = |p: &image::Rgba<u8>| [p.0[0], p.0[1], p.0[2]];

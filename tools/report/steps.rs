@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     models::{DISTANCES, Studio},
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -105,8 +105,8 @@ struct Counts {
     wanted: usize,
 }
 
-fn style(outlines: Outlines, width: f32) -> Wear {
-    Wear::style(ComicStyle::new().with(Outlines { width, ..outlines }))
+fn style(outlines: Outlines, width: f32) -> Drawn {
+    Drawn::style(ComicStyle::new().with(Outlines { width, ..outlines }))
 }
 
 /// Of a model that turns, for each variant.
@@ -125,8 +125,8 @@ fn of_model(
         let truth = fine.rig.truth(size, FINE);
         let wanted = truth.any(&[0, 1, 2]);
         for ((_, outlines), counts) in variants.iter().zip(&mut counts) {
-            lined.rig.wear(&style(*outlines, 2.0));
-            thin.rig.wear(&style(*outlines, 1.0));
+            lined.rig.set_drawn(&style(*outlines, 2.0));
+            thin.rig.set_drawn(&style(*outlines, 1.0));
             for studio in [&mut *lined, &mut *thin] {
                 // Another variant may need pipelines and a prepass.
                 studio.rig.headless.step(2);
@@ -148,11 +148,11 @@ fn of_mountains(variants: &[(&str, Outlines)]) -> Vec<Counts> {
     let size = UVec2::new(960, 540);
     let mut rig = Rig::new(Some(BuiltIn::Mountains), size);
     rig.unlight();
-    rig.wear(&Wear::Nothing);
+    rig.set_drawn(&Drawn::Nothing);
     rig.headless.step(4);
     let plain = rig.headless.picture();
     let of = |(_, outlines): &(&str, Outlines)| {
-        rig.wear(&style(*outlines, 1.0));
+        rig.set_drawn(&style(*outlines, 1.0));
         rig.headless.step(4);
         let mask = mask(&plain, &rig.headless.picture());
         Counts {

@@ -16,7 +16,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     models::Studio,
-    rig::{Rig, Wear},
+    rig::{Drawn, Rig},
     table::Table,
 };
 
@@ -118,7 +118,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         studio.show_meshes(vec![mesh]);
         for width in [1.0, 2.0, 3.0, 5.0, 8.0f32] {
             let style = ComicStyle::new().with(outlines(width));
-            studio.rig.wear(&Wear::style(style));
+            studio.rig.set_drawn(&Drawn::style(style));
             studio.rig.headless.step(4);
             let picture = studio.rig.headless.picture();
             let lines = starts.map(|start| line(&picture, slope, start));

@@ -158,7 +158,7 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)
 }
 
 /// Gives all meshes the material of a variant.
-fn wear(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
+fn set_light(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
     let world = rig.headless.app.world_mut();
     for mesh in meshes {
         let mut mesh = world.entity_mut(*mesh);
@@ -188,7 +188,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         // Round 0 compiles the variants, and is not counted.
         for round in 0..=run.rounds {
             for (name, light) in &variants {
-                wear(&mut rig, &meshes, light.as_ref());
+                set_light(&mut rig, &meshes, light.as_ref());
                 rig.headless.step(2);
                 let frames = bench::laps(&mut rig.headless, 2 * run.frames);
                 let main = frames.iter().map(|laps| laps[Lap::Main as usize]);

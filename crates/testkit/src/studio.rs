@@ -89,7 +89,7 @@ impl Studio {
         let style = style.unwrap_or(&none);
         let world = self.headless.app.world_mut();
         set_screens(world, follows_objects(style));
-        wear(&mut world.commands().entity(self.camera), style);
+        set_style(&mut world.commands().entity(self.camera), style);
         world.flush();
         let frame = TimeUpdateStrategy::ManualDuration(SHOT / SETTLE);
         self.headless.app.insert_resource(frame);
@@ -108,7 +108,7 @@ impl Studio {
 
 /// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither,
 /// which would speckle flat areas whose tone lies at a step between two bands.
-pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
+pub fn set_style(camera: &mut EntityCommands, style: &ComicStyle) {
     let divides = style.get::<ToneBands>().is_some()
         || style.get::<ToneRamp>().is_some()
         || style.get::<TwoTone>().is_some();

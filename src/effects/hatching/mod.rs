@@ -65,8 +65,9 @@ pub struct Hatching {
     /// Range 1 to 3, default 2.
     #[reflect(@FieldRange::linear(1.0, 3.0), @BlendField::Switch)]
     pub layers: u32,
-    /// Darkness of a direction at which the next one begins; the last one goes on to black. Dots
-    /// take at least 0.3 and at most 0.5: they would touch. Range 0.1 to 0.9, default 0.45.
+    /// Darkness of one direction of strokes at which the next direction begins. The last direction
+    /// darkens to black. Dots clamp it to 0.3 to 0.5, because denser dots would touch. Range 0.1 to
+    /// 0.9, default 0.45.
     #[reflect(@FieldRange::linear(0.1, 0.9))]
     pub layer_darkness: f32,
     /// Turn of all strokes in degrees: about the vertical axis of the world or the object, or on

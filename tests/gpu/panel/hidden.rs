@@ -18,7 +18,7 @@ use bevy::{
     window::{CursorMoved, PrimaryWindow, Window, WindowRef, WindowResolution},
 };
 use bevy_comics_inspector::ComicsInspectorPlugin;
-use bevy_comics_testkit::{panel_state::panel_state, studio::wear};
+use bevy_comics_testkit::{panel_state::panel_state, studio::set_style};
 use image::{DynamicImage, RgbImage};
 use serde_json::Value;
 
@@ -131,7 +131,7 @@ impl HiddenWindow {
             let mut commands = world.commands();
             let mut camera = commands.entity(camera);
             camera.insert((Name::new(name), view));
-            wear(&mut camera, &shown.style);
+            set_style(&mut camera, &shown.style);
         }
         world.flush();
         let hidden = Self {

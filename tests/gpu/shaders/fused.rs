@@ -72,9 +72,14 @@ fn views() -> Vec<Definitions> {
     ])
 }
 
-/// Some of the views, which have every choice.
+/// Some of the views, which have every choice, and the first one of a plain camera.
 fn some_views() -> Vec<Definitions> {
-    views().into_iter().step_by(65).collect()
+    let named = |view: &Definitions, wanted: &str| view.iter().any(|(name, _)| *name == wanted);
+    let plain = views().into_iter().find(|view| {
+        named(view, "SAME_SIZE") && named(view, "VISIBLE_RANGE") && !named(view, "MULTISAMPLED")
+    });
+    let plain = plain.expect("a view of one sample with a range");
+    views().into_iter().step_by(65).chain([plain]).collect()
 }
 
 /// Every mode of every effect, in some views.
