@@ -12,7 +12,8 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
-                   parts, scene-parts, toon, growth, peers, flicker or soak
+                   parts, scene-parts, toon, growth, many-objects, peers,
+                   flicker or soak
   --tables         write the CSV files alone, without text and plots
   --render         measure nothing; write text and plots from the CSV files
 

@@ -19,6 +19,7 @@ mod growth;
 mod ink;
 mod ladder;
 mod lines;
+mod many_objects;
 mod meadow;
 mod models;
 mod page;

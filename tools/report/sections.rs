@@ -1,8 +1,8 @@
 //! The sections of the report: what each measures, and the question that it answers.
 
 use crate::{
-    Run, encodings, flicker, growth, ink, ladder, lines, machine, meadow, models, page, parts,
-    peers, ranges, soak, stability, steps, straight, toon,
+    Run, encodings, flicker, growth, ink, ladder, lines, machine, many_objects, meadow, models,
+    page, parts, peers, ranges, soak, stability, steps, straight, toon,
 };
 
 /// A part of the report that is measured by itself.
@@ -38,7 +38,7 @@ const fn section(
 const WHOLE: &str = "Whole and steady lines";
 
 /// All sections, in the order in which they are measured.
-pub const SECTIONS: [Section; 21] = [
+pub const SECTIONS: [Section; 22] = [
     MACHINE,
     section(
         "ranges",
@@ -141,6 +141,12 @@ pub const SECTIONS: [Section; 21] = [
         growth::measure,
         "How does the cost grow with pixels, vertices (to a million) and cameras?",
         "4. Cost and its growth",
+    ),
+    section(
+        "many-objects",
+        many_objects::measure,
+        "How does a frame grow with the number of objects?",
+        "Many objects",
     ),
     section(
         "peers",

@@ -1,0 +1,309 @@
+//! How the time of a frame grows with the number of objects.
+//!
+//! The picture is small, so that pixels cost little. Times are wall times of whole frames, until
+//! the device is done, and of stages of the render schedule on the CPU.
+
+use std::time::Instant;
+
+use bevy::{
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    prelude::*,
+    render::{Render, RenderApp, RenderSystems},
+};
+use bevy_comics::{
+    ComicStyle, ComicsPlugin, ToonScene, lines::Outlines, objects::NoOutlines, toon::ToonMaterial,
+};
+use bevy_comics_testkit::{
+    bench,
+    headless::{Headless, HeadlessOptions},
+};
+
+use crate::{Run, table::Table};
+
+/// What is drawn of the objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Variant {
+    /// An app without the plugin.
+    WithoutPlugin,
+    /// The plugin, and a camera without a style.
+    Idle,
+    /// The engine's depth and normal prepass alone.
+    Prepasses,
+    /// Default outlines.
+    Outlines,
+    /// Outlines without lines between objects, so without object ids.
+    WithoutIds,
+    /// Default outlines; one object has none.
+    NoOutlines,
+    /// Default outlines; one object in a hundred moves.
+    Moving,
+    /// Default outlines; the camera turns, so that objects enter and leave.
+    Turning,
+    /// An empty [`ToonScene`].
+    EmptyScene,
+    /// Each of a thousand objects is a [`ToonScene`].
+    Scenes,
+}
+
+impl Variant {
+    const ALL: [Self; 10] = [
+        Self::WithoutPlugin,
+        Self::Idle,
+        Self::Prepasses,
+        Self::WithoutIds,
+        Self::Outlines,
+        Self::NoOutlines,
+        Self::Moving,
+        Self::Turning,
+        Self::EmptyScene,
+        Self::Scenes,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::WithoutPlugin => "without the plugin",
+            Self::Idle => "idle plugin",
+            Self::Prepasses => "depth and normal prepass",
+            Self::WithoutIds => "outlines without object edges",
+            Self::Outlines => "outlines",
+            Self::NoOutlines => "outlines; one object without",
+            Self::Moving => "outlines; 1 % move",
+            Self::Turning => "outlines; the camera turns",
+            Self::EmptyScene => "idle; an empty toon scene",
+            Self::Scenes => "idle; 1000 toon scenes",
+        }
+    }
+
+    fn has_lines(self) -> bool {
+        matches!(
+            self,
+            Self::Outlines | Self::WithoutIds | Self::NoOutlines | Self::Moving | Self::Turning
+        )
+    }
+}
+
+/// The stages of a frame that are timed. The first begins with the frame, the others with the end
+/// of the one before.
+const STAGES: [&str; 5] = ["update", "queue", "batch", "bind", "encode"];
+
+/// When the stages of this frame ended.
+#[derive(Resource)]
+struct Stages([Instant; STAGES.len()]);
+
+fn mark(stage: usize) -> impl FnMut(ResMut<Stages>) {
+    move |mut stages| stages.0[stage] = Instant::now()
+}
+
+/// Notes when the stages of a frame end.
+struct StagesPlugin;
+
+impl Plugin for StagesPlugin {
+    fn build(&self, app: &mut App) {
+        use RenderSystems::{PhaseSort, PrepareBindGroups, PrepareResourcesFlush, Queue};
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .insert_resource(Stages([Instant::now(); STAGES.len()]))
+            .add_systems(
+                Render,
+                (
+                    mark(0).after(RenderSystems::PrepareViews).before(Queue),
+                    mark(1).after(Queue).before(PhaseSort),
+                    mark(2)
+                        .after(PrepareResourcesFlush)
+                        .before(PrepareBindGroups),
+                    mark(3)
+                        .after(PrepareBindGroups)
+                        .before(RenderSystems::Render),
+                    mark(4)
+                        .after(RenderSystems::Render)
+                        .before(RenderSystems::Cleanup),
+                ),
+            );
+    }
+}
+
+/// An app with cubes that share a mesh and a material.
+struct Crowd {
+    headless: Headless,
+    variant: Variant,
+    camera: Entity,
+    cubes: Vec<Entity>,
+}
+
+impl Crowd {
+    fn new(variant: Variant, count: usize) -> Self {
+        let options = HeadlessOptions {
+            size: UVec2::splat(64),
+            parallel_systems: true,
+            ..default()
+        };
+        let mut headless = if variant == Variant::WithoutPlugin {
+            Headless::new(options, StagesPlugin)
+        } else {
+            Headless::new(options, (ComicsPlugin, StagesPlugin))
+        };
+        let target = headless.render_target();
+        let world = headless.app.world_mut();
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(StandardMaterial {
+                unlit: true,
+                ..default()
+            });
+        // A cube of cubes, all in view.
+        let side = (count as f32).cbrt().ceil();
+        let place = |at: usize| {
+            let at = at as f32;
+            2.0 * Vec3::new(
+                at % side,
+                (at / side).floor() % side,
+                (at / side / side).floor(),
+            )
+        };
+        let cube = |at| {
+            let at = Transform::from_translation(place(at) - side)
+                .with_rotation(Quat::from_rotation_y(at as f32));
+            (Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), at)
+        };
+        let cubes = (0..count).map(|at| world.spawn(cube(at)).id()).collect();
+        let camera = world
+            .spawn((
+                Camera3d::default(),
+                target,
+                Msaa::Off,
+                Transform::from_xyz(0.0, 0.0, 4.0 * side).looking_at(Vec3::ZERO, Vec3::Y),
+            ))
+            .id();
+        let mut crowd = Self {
+            headless,
+            variant,
+            camera,
+            cubes,
+        };
+        crowd.dress();
+        crowd
+    }
+
+    /// Adds what the variant is about.
+    fn dress(&mut self) {
+        let (camera, cubes) = (self.camera, &self.cubes);
+        let world = self.headless.app.world_mut();
+        if self.variant.has_lines() {
+            let mut outlines = Outlines::default();
+            if self.variant == Variant::WithoutIds {
+                outlines.objects = None;
+            }
+            ComicStyle::new()
+                .with(outlines)
+                .apply(&mut world.commands().entity(camera));
+            world.flush();
+        }
+        match self.variant {
+            Variant::Prepasses => {
+                world
+                    .entity_mut(camera)
+                    .insert((DepthPrepass, NormalPrepass));
+            }
+            Variant::NoOutlines => {
+                world.entity_mut(cubes[0]).insert(NoOutlines::default());
+            }
+            Variant::EmptyScene => {
+                world.spawn(ToonScene::default());
+            }
+            Variant::Scenes => {
+                for cube in cubes.iter().take(1000) {
+                    world.entity_mut(*cube).insert(ToonScene::default());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Moves what the variant moves.
+    fn advance(&mut self, frame: usize) {
+        let world = self.headless.app.world_mut();
+        match self.variant {
+            Variant::Moving => {
+                for cube in self.cubes.iter().step_by(100) {
+                    if let Some(mut at) = world.get_mut::<Transform>(*cube) {
+                        at.translation.y += if frame % 2 == 0 { 0.1 } else { -0.1 };
+                    }
+                }
+            }
+            Variant::Turning => {
+                if let Some(mut at) = world.get_mut::<Transform>(self.camera) {
+                    let angle = if frame % 2 == 0 { 0.1 } else { -0.1 };
+                    at.rotate_y(angle);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Milliseconds of a frame, and of its stages.
+    fn frame(&mut self, frame: usize) -> (f64, [f64; STAGES.len()]) {
+        self.advance(frame);
+        let start = Instant::now();
+        let whole = bench::whole_frame(&mut self.headless);
+        let world = self.headless.app.sub_app(RenderApp).world();
+        let ends = world.resource::<Stages>().0;
+        let mut last = start;
+        let stages = ends.map(|end| {
+            let took = end.saturating_duration_since(last);
+            last = end;
+            took.as_secs_f64() * 1e3
+        });
+        (whole, stages)
+    }
+
+    fn materials(&self) -> usize {
+        let world = self.headless.app.world();
+        world
+            .get_resource::<Assets<ToonMaterial>>()
+            .map_or(0, Assets::len)
+    }
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let header = [
+        &["objects", "variant", "round", "toon_materials", "whole"][..],
+        &STAGES,
+    ]
+    .concat();
+    let mut table = Table::new(&header);
+    let counts: &[usize] = if run.quick {
+        &[100]
+    } else {
+        &[1_000, 10_000, 20_000, 60_000, 100_000]
+    };
+    let frames = if run.quick { 1 } else { 9 };
+    for &count in counts {
+        for variant in Variant::ALL {
+            let mut crowd = Crowd::new(variant, count);
+            // Pipelines compile, and textures and buffers get their size.
+            crowd.headless.step(4);
+            for round in 0..run.rounds.min(3) {
+                let mut all: Vec<_> = (0..frames).map(|frame| crowd.frame(frame)).collect();
+                all.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let (whole, stages) = all[all.len() / 2];
+                let ms = stages.map(|ms| format!("{ms:.3}"));
+                let [update, queue, batch, bind, encode] = &ms;
+                let whole = format!("{whole:.3}");
+                let name = variant.name();
+                let materials = crowd.materials();
+                table.push(&[
+                    &count, &name, &round, &materials, &whole, update, queue, batch, bind, encode,
+                ]);
+                if round == 0 {
+                    run.say(&format!(
+                        "{count} objects, {name}: {whole} ms, {ms:?}, {materials}"
+                    ));
+                }
+            }
+        }
+    }
+    run.save("many_objects_times", &table)
+}
