@@ -2,7 +2,6 @@
 
 use bevy::{
     ecs::{
-        change_detection::DetectChanges,
         entity::Entity,
         query::{Or, With, Without},
         reflect::{AppTypeRegistry, ReflectComponent},
@@ -15,7 +14,7 @@ use bevy::{
 
 use super::{
     name::MaterialName,
-    scene::{Original, SceneRoots},
+    scene::{Original, SceneChanges, SceneRoots},
 };
 
 /// The engine's component with the name of a glTF material. This crate does not depend on the
@@ -31,7 +30,7 @@ type Nameless = (
 /// Names the meshes of scenes that choose shadings by name.
 pub(super) fn name_meshes(
     mut commands: Commands,
-    roots: SceneRoots,
+    (roots, changes): (SceneRoots, Res<SceneChanges>),
     meshes: Query<EntityRef, Nameless>,
     types: Option<Res<AppTypeRegistry>>,
 ) {
@@ -39,11 +38,9 @@ pub(super) fn name_meshes(
         return;
     };
     let types = types.read();
-    for mesh in &meshes {
-        let is_new = !mesh.contains::<Original>();
-        let needs_name = roots.nearest(mesh.id()).is_some_and(|(_, scene)| {
-            !scene.overrides.is_empty() && (is_new || scene.is_changed())
-        });
+    for mesh in meshes.iter_many(&changes.meshes) {
+        let scene = roots.nearest(mesh.id()).map(|(_, scene)| scene);
+        let needs_name = scene.is_some_and(|scene| !scene.overrides.is_empty());
         if needs_name && let Some(name) = gltf_name(mesh, &types) {
             name_mesh(&mut commands, mesh.id(), name);
         }

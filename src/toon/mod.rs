@@ -133,9 +133,9 @@ fn add_material(app: &mut App) -> bool {
     if let Some(mut images) = app.world_mut().get_resource_mut::<Assets<Image>>() {
         view_range::add_texture(&mut images);
     }
+    scene::build(app);
     app.add_plugins(MaterialPlugin::<ToonMaterial>::default())
         .register_asset_reflect::<ToonMaterial>()
-        .init_resource::<scene::Copies>()
         .init_resource::<ramp_sums::RampSums>()
         .init_resource::<smooth::SmoothMeshes>()
         .add_systems(
@@ -151,10 +151,9 @@ fn add_material(app: &mut App) -> bool {
         .add_systems(
             PostUpdate,
             (
+                scene::find_meshes,
                 scene::follow_materials,
-                scene::restore,
                 gltf_name::name_meshes,
-                scene::choose_again,
                 scene::convert,
                 // Before the events of this frame: materials and sums arrive together.
                 ramp_sums::sum_ramp_maps,

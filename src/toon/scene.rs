@@ -1,14 +1,16 @@
 //! A component that draws a whole scene with the toon material.
 
 use bevy::{
+    app::App,
     asset::{AssetEvent, AssetId, Assets, Handle},
     ecs::{
         change_detection::{DetectChanges, Ref},
         component::Component,
-        entity::Entity,
-        hierarchy::ChildOf,
-        lifecycle::RemovedComponents,
+        entity::{Entity, EntityHashMap, EntityHashSet},
+        hierarchy::{ChildOf, Children},
+        lifecycle::{Insert, Remove, RemovedComponents},
         message::MessageReader,
+        observer::On,
         query::{Changed, Or, With, Without},
         reflect::ReflectComponent,
         resource::Resource,
@@ -88,23 +90,164 @@ impl ToonScene {
 
 /// On a converted mesh: its standard material, the root that converted it, and the shading that was
 /// chosen for it.
-#[derive(Component)]
+#[derive(Component, PartialEq)]
 pub(super) struct Original {
     pub(super) material: Handle<StandardMaterial>,
     pub(super) root: Entity,
     pub(super) shading: Option<Handle<ToonShading>>,
 }
 
-/// What a toon copy is a copy of: root, standard material and shading.
+/// What the copies of a scene have besides their standard materials and shadings.
+#[derive(Clone, Debug, PartialEq)]
+struct Settings {
+    light: ToonLight,
+    shading: Option<Handle<ToonShading>>,
+}
+
+impl Settings {
+    fn of(scene: &ToonScene) -> Self {
+        Self {
+            light: scene.light.clone(),
+            shading: scene.shading.clone(),
+        }
+    }
+}
+
+/// A scene as its meshes were last converted.
+struct Root {
+    settings: usize,
+    overrides: HashMap<MaterialName, Handle<ToonShading>>,
+}
+
+/// What a toon copy is a copy of: settings, standard material and shading.
 type CopyKey = (
-    Entity,
+    usize,
     AssetId<StandardMaterial>,
     Option<AssetId<ToonShading>>,
 );
 
-/// The toon copies, so that meshes with the same material and shading share one.
+/// The toon copies. Meshes with the same standard material and shading share one, also those of
+/// different scenes with equal settings.
 #[derive(Resource, Default)]
-pub(super) struct Copies(HashMap<CopyKey, Handle<ToonMaterial>>);
+pub(super) struct Copies {
+    copies: HashMap<CopyKey, Handle<ToonMaterial>>,
+    /// The different settings of all scenes, and how many scenes have them: none where a place is
+    /// free.
+    settings: Vec<(Settings, usize)>,
+    roots: EntityHashMap<Root>,
+    /// Settings that have changed in this frame.
+    changed: Vec<usize>,
+}
+
+impl Copies {
+    /// The place of settings, as one more scene has them.
+    fn enter(&mut self, settings: Settings) -> usize {
+        let known = self.settings.iter();
+        let mut known = known.enumerate().filter(|(_, (_, users))| *users > 0);
+        if let Some((at, _)) = known.find(|(_, (known, _))| *known == settings) {
+            self.settings[at].1 += 1;
+            return at;
+        }
+        let free = self.settings.iter().position(|(_, users)| *users == 0);
+        let at = free.unwrap_or(self.settings.len());
+        if at == self.settings.len() {
+            self.settings.push((settings, 1));
+        } else {
+            self.settings[at] = (settings, 1);
+        }
+        at
+    }
+
+    /// One scene fewer has the settings. Copies of settings that no scene has are dropped.
+    fn leave(&mut self, at: usize) {
+        self.settings[at].1 -= 1;
+        if self.settings[at].1 == 0 {
+            self.copies.retain(|(settings, ..), _| *settings != at);
+        }
+    }
+
+    /// Notes what a scene says; whether its meshes may have other copies now.
+    fn update(&mut self, root: Entity, scene: &ToonScene) -> bool {
+        let settings = Settings::of(scene);
+        let before = self.roots.get(&root);
+        let same_shadings = before.is_some_and(|root| {
+            root.overrides == scene.overrides
+                && self.settings[root.settings].0.shading == settings.shading
+        });
+        let before = before.map(|root| root.settings);
+        let at = match before {
+            Some(at) if self.settings[at].0 == settings => at,
+            // The only scene with its settings keeps their place, so that its copies only change.
+            Some(at) if self.settings[at].1 == 1 && !self.is_known(&settings) => {
+                self.settings[at].0 = settings;
+                self.changed.push(at);
+                at
+            }
+            Some(at) => {
+                let new = self.enter(settings);
+                self.leave(at);
+                new
+            }
+            None => self.enter(settings),
+        };
+        let overrides = scene.overrides.clone();
+        let new = Root {
+            settings: at,
+            overrides,
+        };
+        self.roots.insert(root, new);
+        !same_shadings || before != Some(at)
+    }
+
+    fn is_known(&self, settings: &Settings) -> bool {
+        let mut known = self.settings.iter();
+        known.any(|(known, users)| *users > 0 && known == settings)
+    }
+
+    fn forget(&mut self, root: Entity) {
+        if let Some(root) = self.roots.remove(&root) {
+            self.leave(root.settings);
+        }
+    }
+}
+
+/// What may have another material than before.
+#[derive(Resource, Default)]
+pub(super) struct SceneChanges {
+    /// Entities, with all of their descendants.
+    subtrees: EntityHashSet,
+    /// Meshes whose standard material has not loaded.
+    waiting: EntityHashSet,
+    /// The meshes among all these, in this frame.
+    pub(super) meshes: Vec<Entity>,
+}
+
+/// Notes changes. Without any, a frame does nothing for each mesh.
+pub(super) fn build(app: &mut App) {
+    app.init_resource::<Copies>()
+        .init_resource::<SceneChanges>()
+        .add_observer(
+            |on: On<Insert, MeshMaterial3d<StandardMaterial>>,
+             mut changes: ResMut<SceneChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Insert, ChildOf>, mut changes: ResMut<SceneChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Remove, ChildOf>, mut changes: ResMut<SceneChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Remove, ToonScene>, mut changes: ResMut<SceneChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        );
+}
 
 /// The scenes, and the way to them.
 #[derive(SystemParam)]
@@ -122,13 +265,42 @@ impl SceneRoots<'_, '_> {
             .find_map(|e| self.roots.get(e).ok())
     }
 
-    fn get(&self, root: Entity) -> Option<Ref<'_, ToonScene>> {
-        self.roots.get(root).ok().map(|(_, scene)| scene)
-    }
-
     pub(super) fn any_has_overrides(&self) -> bool {
         self.roots.iter().any(|(_, s)| !s.overrides.is_empty())
     }
+}
+
+/// Notes the settings of scenes that changed, and finds the meshes that may have another material.
+pub(super) fn find_meshes(
+    tuned: Query<(Entity, &ToonScene), Changed<ToonScene>>,
+    scenes: Query<(), With<ToonScene>>,
+    mut removed: RemovedComponents<ToonScene>,
+    children: Query<&Children>,
+    meshes: Query<(), Or<(With<MeshMaterial3d<StandardMaterial>>, With<Original>)>>,
+    (mut copies, mut changes): (ResMut<Copies>, ResMut<SceneChanges>),
+) {
+    let changes = &mut *changes;
+    changes.meshes.clear();
+    copies.changed.clear();
+    for root in removed.read().filter(|root| !scenes.contains(*root)) {
+        copies.forget(root);
+    }
+    for (root, scene) in &tuned {
+        if copies.update(root, scene) {
+            changes.subtrees.insert(root);
+        }
+    }
+    let mut below: Vec<Entity> = changes.subtrees.drain().collect();
+    let mut visited = EntityHashSet::default();
+    while let Some(entity) = below.pop() {
+        if visited.insert(entity) {
+            below.extend(children.get(entity).into_iter().flatten());
+        }
+    }
+    visited.extend(changes.waiting.drain());
+    changes
+        .meshes
+        .extend(visited.into_iter().filter(|mesh| meshes.contains(*mesh)));
 }
 
 /// Standard materials, shadings, and the copies that are made of both.
@@ -142,10 +314,11 @@ pub(super) struct Materials<'w> {
 
 impl Materials<'_> {
     /// What a copy is, if its standard material has loaded.
-    fn copy(&self, key: CopyKey, scene: &ToonScene) -> Option<ToonMaterial> {
-        let (_, original, shading) = key;
+    fn copy(&self, key: CopyKey) -> Option<ToonMaterial> {
+        let (settings, original, shading) = key;
+        let settings = &self.copies.settings[settings].0;
         let shadings = self.shadings.as_ref();
-        let loaded = [shading, scene.shading.as_ref().map(Handle::id)]
+        let loaded = [shading, settings.shading.as_ref().map(Handle::id)]
             .into_iter()
             .flatten()
             .find_map(|shading| shadings.and_then(|shadings| shadings.get(shading)));
@@ -155,25 +328,32 @@ impl Materials<'_> {
                 ..self.standard.get(original)?.clone()
             },
             extension: loaded.map_or_else(
-                || scene.light.clone(),
-                |shading| shading.with_maps_of(&scene.light),
+                || settings.light.clone(),
+                |shading| shading.with_maps_of(&settings.light),
             ),
         })
     }
 
     /// The shared copy, which is made if it is not there.
-    fn shared(&mut self, original: &Original, scene: &ToonScene) -> Option<Handle<ToonMaterial>> {
+    fn shared(&mut self, original: &Original) -> Option<Handle<ToonMaterial>> {
+        let settings = self.copies.roots.get(&original.root)?.settings;
         let shading = original.shading.as_ref().map(Handle::id);
-        let key = (original.root, original.material.id(), shading);
-        if let Some(handle) = self.copies.0.get(&key) {
+        let key = (settings, original.material.id(), shading);
+        if let Some(handle) = self.copies.copies.get(&key) {
             return Some(handle.clone());
         }
-        let copy = self.copy(key, scene)?;
+        let copy = self.copy(key)?;
         let handle = self.toon.add(copy);
-        self.copies.0.insert(key, handle.clone());
+        self.copies.copies.insert(key, handle.clone());
         Some(handle)
     }
 }
+
+/// What determines the shading of a mesh.
+type Said = (
+    Option<&'static ToonShadingHandle>,
+    Option<&'static MaterialName>,
+);
 
 /// The shading of a mesh: its own, or what the scene says for its name.
 fn choose(
@@ -186,76 +366,20 @@ fn choose(
         .cloned()
 }
 
-/// What determines the shading of a mesh.
-type Said = (
-    Option<&'static ToonShadingHandle>,
-    Option<&'static MaterialName>,
+/// The materials of a mesh.
+type Dressed = (
+    Option<&'static MeshMaterial3d<StandardMaterial>>,
+    Option<&'static MeshMaterial3d<ToonMaterial>>,
+    Option<&'static Original>,
 );
 
-/// Converts the meshes below a root that have a standard material.
-pub(super) fn convert(
-    mut commands: Commands,
-    roots: SceneRoots,
-    meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>, Said)>,
-    mut materials: Materials,
-) {
-    if roots.roots.is_empty() {
-        if !materials.copies.0.is_empty() {
-            materials.copies.0.clear();
-        }
-        return;
-    }
-    // The copies of a root are kept as long as the root exists.
-    (materials.copies.0).retain(|(root, ..), _| roots.roots.contains(*root));
-    for (entity, material, (own, name)) in &meshes {
-        let Some((root, scene)) = roots.nearest(entity) else {
-            continue;
-        };
-        let original = Original {
-            material: material.0.clone(),
-            root,
-            shading: choose(&scene, own, name),
-        };
-        if let Some(handle) = materials.shared(&original, &scene) {
-            commands
-                .entity(entity)
-                .remove::<MeshMaterial3d<StandardMaterial>>()
-                .insert((MeshMaterial3d(handle), original));
-        }
-    }
-}
-
-/// Restores the standard material of meshes whose nearest root has changed.
-pub(super) fn restore(
-    mut commands: Commands,
-    mut removed: RemovedComponents<ToonScene>,
-    roots: SceneRoots,
-    moved: Query<(), Changed<ChildOf>>,
-    converted: Query<(Entity, &Original), With<MeshMaterial3d<ToonMaterial>>>,
-) {
-    let root_gone = removed.read().count() > 0;
-    let root_new = roots.roots.iter().any(|(_, scene)| scene.is_added());
-    if !root_gone && !root_new && moved.is_empty() {
-        return;
-    }
-    for (entity, original) in &converted {
-        let nearest = roots.nearest(entity).map(|(root, _)| root);
-        if nearest != Some(original.root) {
-            commands
-                .entity(entity)
-                .remove::<(MeshMaterial3d<ToonMaterial>, Original)>()
-                .insert(MeshMaterial3d(original.material.clone()));
-        }
-    }
-}
-
-/// Changes of what determines the shading of a mesh.
+/// Converted meshes whose shading may be another one now.
 #[derive(SystemParam)]
 pub(super) struct SaidChanges<'w, 's> {
     changed: Query<
         'w,
         's,
-        (),
+        Entity,
         (
             With<Original>,
             Or<(Changed<ToonShadingHandle>, Changed<MaterialName>)>,
@@ -266,41 +390,56 @@ pub(super) struct SaidChanges<'w, 's> {
 }
 
 impl SaidChanges<'_, '_> {
-    fn any(&mut self) -> bool {
-        let removed = self.removed_shadings.read().count() + self.removed_names.read().count();
-        removed > 0 || !self.changed.is_empty()
+    fn meshes(&mut self) -> impl Iterator<Item = Entity> {
+        let removed = self
+            .removed_shadings
+            .read()
+            .chain(self.removed_names.read());
+        self.changed.iter().chain(removed)
     }
 }
 
-/// Chooses the shadings of converted meshes again, after changes of what says them.
-pub(super) fn choose_again(
+/// Gives meshes below a scene their toon copies, and others their standard materials.
+pub(super) fn convert(
     mut commands: Commands,
-    mut changes: SaidChanges,
+    mut changes: ResMut<SceneChanges>,
+    mut said: SaidChanges,
     roots: SceneRoots,
-    converted: Query<(Entity, &Original, Said)>,
+    meshes: Query<(Dressed, Said)>,
     mut materials: Materials,
 ) {
-    let any = changes.any();
-    let is_tuned = |scene: &Ref<ToonScene>| scene.is_changed() && !scene.is_added();
-    if !any && !roots.roots.iter().any(|(_, scene)| is_tuned(&scene)) {
-        return;
-    }
-    for (entity, original, (own, name)) in &converted {
-        let Some(scene) = roots.get(original.root) else {
+    let mut found = std::mem::take(&mut changes.meshes);
+    found.extend(said.meshes());
+    for entity in found {
+        let Ok(((standard, toon, original), (own, name))) = meshes.get(entity) else {
             continue;
         };
-        let shading = choose(&scene, own, name);
-        if shading == original.shading {
+        let standard = standard.map(|material| &material.0);
+        let Some(source) = standard.or(original.map(|original| &original.material)) else {
             continue;
-        }
+        };
+        let mut mesh = commands.entity(entity);
+        let Some((root, scene)) = roots.nearest(entity) else {
+            if original.is_some() {
+                mesh.remove::<(MeshMaterial3d<ToonMaterial>, Original)>()
+                    .insert(MeshMaterial3d(source.clone()));
+            }
+            continue;
+        };
         let chosen = Original {
-            material: original.material.clone(),
-            root: original.root,
-            shading,
+            material: source.clone(),
+            root,
+            shading: choose(&scene, own, name),
         };
-        if let Some(handle) = materials.shared(&chosen, &scene) {
-            commands
-                .entity(entity)
+        let Some(handle) = materials.shared(&chosen) else {
+            changes.waiting.insert(entity);
+            continue;
+        };
+        let is_done = standard.is_none()
+            && original == Some(&chosen)
+            && toon.is_some_and(|toon| toon.0 == handle);
+        if !is_done {
+            mesh.remove::<MeshMaterial3d<StandardMaterial>>()
                 .insert((MeshMaterial3d(handle), chosen));
         }
     }
@@ -335,11 +474,10 @@ pub(super) fn apply_shadings(
     }
 }
 
-/// Updates the copies after changes of standard materials, of shadings or of a root's settings.
+/// Updates the copies after changes of standard materials, of shadings or of scenes.
 pub(super) fn follow_materials(
     mut standard: MessageReader<AssetEvent<StandardMaterial>>,
     mut shadings: MessageReader<AssetEvent<ToonShading>>,
-    roots: SceneRoots,
     mut materials: Materials,
 ) {
     let standard = standard.read().filter_map(|event| match event {
@@ -348,30 +486,28 @@ pub(super) fn follow_materials(
     });
     let standard: HashSet<_> = standard.collect();
     let shadings: HashSet<_> = shadings.read().filter_map(shading::changed).collect();
-    let tuned = roots.roots.iter().any(|(_, scene)| scene.is_changed());
-    if standard.is_empty() && shadings.is_empty() && !tuned {
+    let Copies {
+        copies,
+        settings,
+        changed,
+        ..
+    } = &*materials.copies;
+    if standard.is_empty() && shadings.is_empty() && changed.is_empty() {
         return;
     }
-    // Also those that no mesh has at the moment: one may have them again.
-    let copies = materials
-        .copies
-        .0
-        .iter()
-        .map(|(key, copy)| (*key, copy.clone()));
-    for (key, handle) in copies.collect::<Vec<_>>() {
-        let (root, original, shading) = key;
-        let Some(scene) = roots.get(root) else {
-            continue;
-        };
-        let is_changed = |shading: Option<AssetId<ToonShading>>| {
-            shading.is_some_and(|id| shadings.contains(&id))
-        };
-        let follows = scene.is_changed()
+    let is_changed =
+        |shading: Option<AssetId<ToonShading>>| shading.is_some_and(|id| shadings.contains(&id));
+    let follows = |(at, original, shading): CopyKey| {
+        changed.contains(&at)
             || standard.contains(&original)
             || is_changed(shading)
-            || is_changed(scene.shading.as_ref().map(Handle::id));
-        if follows
-            && let Some(copy) = materials.copy(key, &scene)
+            || is_changed(settings[at].0.shading.as_ref().map(Handle::id))
+    };
+    // Also those that no mesh has at the moment: one may have them again.
+    let copies = copies.iter().filter(|(key, _)| follows(**key));
+    let copies: Vec<_> = copies.map(|(key, copy)| (*key, copy.clone())).collect();
+    for (key, handle) in copies {
+        if let Some(copy) = materials.copy(key)
             && let Some(mut material) = materials.toon.get_mut(&handle)
         {
             *material = copy;

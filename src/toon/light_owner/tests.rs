@@ -17,18 +17,17 @@ fn app() -> App {
         .init_asset::<StandardMaterial>()
         .init_asset::<ToonMaterial>()
         .init_asset::<ToonShading>()
-        .init_resource::<scene::Copies>()
         .add_systems(
             Update,
             (
                 scene::apply_shadings,
+                scene::find_meshes,
                 scene::follow_materials,
-                scene::restore,
-                scene::choose_again,
                 scene::convert,
             )
                 .chain(),
         );
+    scene::build(&mut app);
     app
 }
 

@@ -6,7 +6,7 @@ use bevy::{
     asset::{AssetEvent, AssetId, Assets},
     ecs::{
         message::MessageReader,
-        query::{Changed, Or},
+        query::{Changed, Or, With},
         resource::Resource,
         system::{Query, Res, ResMut},
     },
@@ -43,7 +43,10 @@ fn rounds_of(material: &ToonMaterial) -> Option<u32> {
     }
 }
 
-type Changes = Or<(Changed<Mesh3d>, Changed<MeshMaterial3d<ToonMaterial>>)>;
+type Changes = (
+    With<MeshMaterial3d<ToonMaterial>>,
+    Or<(Changed<Mesh3d>, Changed<MeshMaterial3d<ToonMaterial>>)>,
+);
 
 /// Begins a task for each mesh that is to have other normals than it has.
 pub(super) fn begin_smoothing(
