@@ -114,7 +114,7 @@ pub use toon::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
 pub mod testing {
     pub use crate::lines::ViewCracks;
     #[cfg(feature = "objects")]
-    pub use crate::objects::{ViewLineWidths, ViewObjectIds, object_id};
+    pub use crate::objects::{ObjectIds, ObjectWork, ViewLineWidths, ViewObjectIds};
 }
 
 /// The code of the README and of the pages, compiled as doctests. That of

@@ -1,5 +1,7 @@
 //! The place of every object in the depth map, for effects that treat objects as a whole.
 
+use std::num::NonZero;
+
 use bevy::{
     app::SubApp,
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -7,7 +9,7 @@ use bevy::{
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
         component::Component,
-        entity::Entity,
+        entity::{Entity, EntityHashMap},
         hierarchy::Children,
         query::{With, Without},
         resource::Resource,
@@ -16,14 +18,13 @@ use bevy::{
     },
     math::{Mat3, Vec2, Vec3},
     mesh::Mesh3d,
-    platform::collections::HashMap,
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BufferUsages,
-            CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache, ShaderStages,
-            ShaderType, SpecializedComputePipeline, SpecializedComputePipelines, StorageBuffer,
-            UniformBuffer,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, BufferBinding,
+            BufferUsages, CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache,
+            ShaderStages, ShaderType, SpecializedComputePipeline, SpecializedComputePipelines,
+            StorageBuffer, UniformBuffer,
             binding_types::{
                 storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer,
                 uniform_buffer_sized,
@@ -39,7 +40,7 @@ use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
     abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
-    object_id::object_id,
+    object_ids::ObjectIds,
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
@@ -47,8 +48,9 @@ use crate::{
     schedule::{ComicsSystems, PrepareComics},
 };
 
-/// Bytes of the table of places: sixteen for every id.
-const TABLE_SIZE: u64 = 65536 * 16;
+/// Bytes of the place of an id, and the smallest number of them in a table.
+const PLACE: u64 = 16;
+const LEAST_PLACES: u64 = 1024;
 
 /// `Bounds` of `depths.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +58,7 @@ struct BoundsUniform {
     centre: Vec3,
     id: u32,
     half: Vec3,
-    unused: u32,
+    state: u32,
     dial: Vec2,
     unused_pair: Vec2,
 }
@@ -92,13 +94,30 @@ impl Bounds {
     }
 }
 
-/// The boxes of all objects, by id, while some view asks for their places.
+/// The id had its object before; is new; is that of several objects.
+const KNOWN: u32 = 0;
+const FRESH: u32 = 1;
+const SHARED: u32 = 2;
+
+/// The boxes of all objects, while some view asks for their places.
 #[derive(Resource, Default)]
 struct ObjectBounds {
-    by_id: HashMap<u16, Bounds>,
+    boxes: EntityHashMap<Bounds>,
     /// The dials of abstraction of the objects that have their own.
-    dials: HashMap<u16, Vec2>,
+    dials: EntityHashMap<Vec2>,
     buffer: StorageBuffer<Vec<BoundsUniform>>,
+}
+
+impl ObjectBounds {
+    /// The boxes of this frame: the buffer may be longer, and the shader reads its length.
+    fn binding(&self) -> Option<BindingResource<'_>> {
+        let size = self.buffer.get().len() as u64 * BoundsUniform::min_size().get();
+        Some(BindingResource::Buffer(BufferBinding {
+            buffer: self.buffer.buffer()?,
+            offset: 0,
+            size: Some(NonZero::new(size)?),
+        }))
+    }
 }
 
 fn extract_bounds(
@@ -111,7 +130,7 @@ fn extract_bounds(
     ),
     mut bounds: ResMut<ObjectBounds>,
 ) {
-    bounds.by_id.clear();
+    bounds.boxes.clear();
     bounds.dials.clear();
     if views.is_empty() {
         return;
@@ -119,14 +138,12 @@ fn extract_bounds(
     let dials = dials(&dialled, &children);
     for (mesh, aabb, at) in &meshes {
         if let Some(found) = Bounds::of(aabb, at) {
-            let id = object_id(groups.object(mesh));
-            let known = bounds
-                .by_id
-                .get(&id)
-                .map_or(found, |known| known.with(found));
-            bounds.by_id.insert(id, known);
+            let object = groups.object(mesh);
+            let known = bounds.boxes.get(&object);
+            let known = known.map_or(found, |known| known.with(found));
+            bounds.boxes.insert(object, known);
             if let Some(dial) = dials.get(&mesh) {
-                bounds.dials.insert(id, *dial);
+                bounds.dials.insert(object, *dial);
             }
         }
     }
@@ -205,6 +222,7 @@ type Placed<'w, 's> = (
             Entity,
             &'static ObjectDepthRequest,
             Option<&'static ViewPlaces>,
+            Option<&'static ObjectDepths>,
         ),
     >,
     Query<'w, 's, Entity, (With<ObjectDepths>, Without<ObjectDepthRequest>)>,
@@ -213,7 +231,7 @@ type Placed<'w, 's> = (
 fn prepare_places(
     mut commands: Commands,
     (views, stale): Placed,
-    mut bounds: ResMut<ObjectBounds>,
+    (mut bounds, ids): (ResMut<ObjectBounds>, Res<ObjectIds>),
     (pipeline, cache): (Res<PlacePipeline>, Res<PipelineCache>),
     mut pipelines: ResMut<SpecializedComputePipelines<PlacePipeline>>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
@@ -225,19 +243,30 @@ fn prepare_places(
         return;
     }
     let dials = &bounds.dials;
-    let found = bounds.by_id.iter().map(|(id, bounds)| BoundsUniform {
-        centre: bounds.low.midpoint(bounds.high),
-        id: u32::from(*id),
-        half: 0.5 * (bounds.high - bounds.low),
-        dial: dials.get(id).copied().unwrap_or(BY_DISTANCE),
+    let found = bounds.boxes.iter().filter_map(|(object, bounds)| {
+        let (id, is_new) = ids.own(*object)?;
+        Some(BoundsUniform {
+            centre: bounds.low.midpoint(bounds.high),
+            id: u32::from(id),
+            half: 0.5 * (bounds.high - bounds.low),
+            state: if is_new { FRESH } else { KNOWN },
+            dial: dials.get(object).copied().unwrap_or(BY_DISTANCE),
+            ..BoundsUniform::default()
+        })
+    });
+    let shared = ids.shared().map(|id| BoundsUniform {
+        id: u32::from(id),
+        state: SHARED,
         ..BoundsUniform::default()
     });
-    let mut found: Vec<_> = found.collect();
+    let mut found: Vec<_> = found.chain(shared).collect();
     // A buffer is never empty. The id 0 is left out.
     found.push(BoundsUniform::default());
+    let places = (ids.len() as u64 + 1).next_power_of_two();
+    let size = PLACE * places.max(LEAST_PLACES);
     bounds.buffer.set(found);
     bounds.buffer.write_buffer(&device, &queue);
-    for (entity, request, known) in &views {
+    for (entity, request, known, table) in &views {
         let forgets = known.is_none_or(|places| places.is_past(request));
         let mut uniform = UniformBuffer::from(ObjectEye {
             forgets: u32::from(forgets),
@@ -252,9 +281,9 @@ fn prepare_places(
             mapping: request.mapping,
             cuts: request.cuts,
         });
-        if known.is_none() {
+        if table.is_none_or(|table| table.table.size() < size) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-            let table = buffer(&device, "comics_object_depths", TABLE_SIZE, usage);
+            let table = buffer(&device, "comics_object_depths", size, usage);
             view.insert(ObjectDepths { table });
         }
     }
@@ -273,7 +302,7 @@ fn place_objects(
     let (Some(pipeline), Some(uniform), Some(objects), true) = (
         cache.get_compute_pipeline(places.pipeline),
         places.uniform.binding(),
-        bounds.buffer.binding(),
+        bounds.binding(),
         keys.is_some() || !places.reads_range(),
     ) else {
         ctx.command_encoder().clear_buffer(&table.table, 0, None);

@@ -21,7 +21,8 @@ struct Bounds {
     centre: vec3<f32>,
     id: u32,
     half: vec3<f32>,
-    unused: u32,
+    // 0: it had the id before; 1: the id is new; 2: several objects have it, so there is no place.
+    state: u32,
     // Its abstraction: a factor of that by distance, and what is added.
     dial: vec2<f32>,
     unused_pair: vec2<f32>,
@@ -88,7 +89,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let found = object_place(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);
     let at = min(bounds.id, arrayLength(&depths) - 1u);
     let before = depths[at].x;
-    let is_new = before == 0.0 || eye.forgets != 0u;
+    if bounds.state == 2u {
+        depths[at] = vec4(0.0);
+        return;
+    }
+    let is_new = before == 0.0 || bounds.state == 1u || eye.forgets != 0u;
     let d = select(kept_place(before - 1.0, found.x), found.x, is_new);
     depths[at] = vec4(d + 1.0, found.y, bounds.dial);
 }

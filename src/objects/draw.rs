@@ -6,7 +6,7 @@ use bevy::{
     log::error_once,
     render::{
         camera::ExtractedCamera,
-        render_phase::{SortedRenderPhase, TrackedRenderPass, ViewSortedRenderPhases},
+        render_phase::TrackedRenderPass,
         render_resource::{LoadOp, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
@@ -18,7 +18,7 @@ use super::{
     depth_test::{DepthTest, TOLERANT, TolerantIds},
     layer::{LayerRequest, ViewLayer},
     line_widths::width_attachment,
-    phase::{Layer, ObjectIdItem},
+    phase::{Layer, ObjectIdPhase, ObjectIdPhases},
 };
 use crate::{
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
@@ -45,13 +45,13 @@ pub(super) fn draw_object_ids(
         Option<(&LayerRequest, &ViewLayer)>,
     )>,
     test: Res<DepthTest>,
-    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    phases: Res<ObjectIdPhases>,
     ledger: Res<StageLedger>,
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
     let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
-    let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
+    let phase = phases.0.get(&extracted.retained_view_entity);
     let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
     let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
         let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
@@ -100,16 +100,12 @@ pub(super) fn draw_object_ids(
 
 /// Draws the items of a layer.
 fn render_layer<'w>(
-    phase: &SortedRenderPhase<ObjectIdItem>,
+    phase: &ObjectIdPhase,
     pass: &mut TrackedRenderPass<'w>,
-    (world, view): (&'w World, Entity),
+    view: (&'w World, Entity),
     layer: Layer,
 ) -> Result<StageOutcome, SkipReason> {
-    let range = ObjectIdItem::of(phase, layer);
-    if range.is_empty() {
-        return Ok(StageOutcome::Ran);
-    }
-    let drawn = phase.render_range(pass, world, view, range);
+    let drawn = phase.render(pass, view, layer);
     drawn.map(|()| StageOutcome::Ran).map_err(|error| {
         error_once!("the object ids were not drawn: {error:?}");
         SkipReason::PipelineNotReady

@@ -23,6 +23,8 @@ use bevy::{
     render::Extract,
 };
 
+use super::changes::ChangedObjects;
+
 /// All meshes of this entity and of its descendants are one object: between them, there
 /// are no [object edges](crate::lines::ObjectEdges).
 ///
@@ -36,7 +38,7 @@ use bevy::{
 /// So a mesh with an `OutlineGroup` of its own is an object of its own.
 ///
 /// The primitives of one glTF node are one object without a group, see
-/// [`object_id`](crate::testing::object_id). An `OutlineGroup` on a primitive separates it from
+/// [id](crate::testing::ObjectIds). An `OutlineGroup` on a primitive separates it from
 /// the others.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
@@ -286,8 +288,11 @@ fn primitive<'a>(path: &'a AssetPath) -> Option<&'a str> {
 pub(crate) fn extract_object_groups(
     main: Extract<Res<ObjectGroups>>,
     mut groups: ResMut<ObjectGroups>,
+    mut changed: ResMut<ChangedObjects>,
 ) {
     if main.is_changed() {
+        changed.note(&groups.roots, &main.roots);
+        changed.note(&groups.primitives, &main.primitives);
         groups.clone_from(&main);
     }
 }

@@ -10,28 +10,36 @@ use bevy::{
     ecs::{
         entity::Entity,
         query::{Has, Or, With, Without},
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
     mesh::Mesh3d,
     pbr::MeshPipelineKey,
-    platform::collections::HashSet,
     render::{
-        render_phase::{SortedRenderPhase, ViewSortedRenderPhases},
+        camera::DirtySpecializations,
         render_resource::TextureUsages,
         renderer::RenderDevice,
         sync_world::MainEntity,
         texture::TextureCache,
-        view::{ExtractedView, Msaa, RenderVisibleEntities, RetainedViewEntity},
+        view::{
+            ExtractedView, Msaa, RenderVisibleEntities, RenderVisibleEntitiesClass,
+            RetainedViewEntity,
+        },
     },
 };
 
 use super::{
-    DepthWanted, ID_FORMAT, IdRequest, IdsWanted, QueuedDepth, ViewObjectIds,
-    items::{Drawn, IdItems},
+    DepthWanted, DepthWrites, ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, QueuedDepth,
+    ViewObjectIds,
+    changes::ChangedObjects,
+    depth_test::DepthTest,
+    groups::ObjectGroups,
+    items::{Drawn, IdItems, Missing},
     layer::LayerRequest,
     line_widths::WidthViews,
     marks::Marks,
-    phase::ObjectIdItem,
+    object_ids::ObjectIds,
+    phase::{Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
+    sections::{SectionBuffer, SectionTables},
     transparent::TransparentItems,
 };
 use crate::gpu::texture;
@@ -84,25 +92,32 @@ type Queued<'w> = (
     (&'w Msaa, Has<NormalPrepass>, Has<MotionVectorPrepass>),
 );
 
-/// The items of an object are made by these.
+/// The instances of a mesh are made by these.
 type Items<'w> = (
     IdItems<'w>,
     TransparentItems<'w>,
-    Res<'w, Marks>,
+    Records<'w>,
     ResMut<'w, WidthViews>,
+    Res<'w, DepthTest>,
 );
+
+/// What has changed since the last frame.
+type Changes<'w> = (Res<'w, DirtySpecializations>, Res<'w, ChangedObjects>);
 
 pub(super) fn queue_object_ids(
     mut commands: Commands,
     views: Query<(Entity, &ExtractedView, &RenderVisibleEntities, Queued), WithIds>,
     stale: Query<Entity, (With<QueuedDepth>, Without<DepthWanted>)>,
-    (mut items, mut transparent, marks, mut with_widths): Items,
-    mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
+    (mut items, mut transparent, mut records, mut with_widths, test): Items,
+    changes: Changes,
+    mut phases: ResMut<ObjectIdPhases>,
 ) {
-    let mut live: HashSet<RetainedViewEntity> = HashSet::default();
     with_widths.clear();
     for view in &stale {
         commands.entity(view).remove::<QueuedDepth>();
+    }
+    for phase in phases.0.values_mut() {
+        phase.live = false;
     }
     for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals, has_motion))) in &views
     {
@@ -110,34 +125,38 @@ pub(super) fn queue_object_ids(
         let asked = ids.0.copied().unwrap_or_default();
         let layer = asked.layer || ids.2;
         let ids = (asked.ids, ids.1.is_some());
-        live.insert(view.retained_view_entity);
-        phases.prepare_for_new_frame(view.retained_view_entity);
-        let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
-            continue;
-        };
+        let phase = phases.0.entry(view.retained_view_entity).or_default();
+        phase.live = true;
         let Some(class) = visible.get::<Mesh3d>() else {
+            phase.clear(&mut records.ids);
             continue;
         };
-        let mut key =
+        let mut view_key =
             MeshPipelineKey::from_msaa_samples(msaa.samples()) | MeshPipelineKey::DEPTH_PREPASS;
         // The engine then binds the view with the uniform of the last frame.
-        key.set(MeshPipelineKey::MOTION_VECTOR_PREPASS, has_motion);
-        let targets = wanted.map(|wanted| QueuedDepth {
-            ids: ids.0,
-            normals: wanted.normals && has_normals,
-        });
-        let writes = queue_objects(
+        view_key.set(MeshPipelineKey::MOTION_VECTOR_PREPASS, has_motion);
+        let key = PhaseKey {
+            view: view_key,
+            ids: ids.0 || ids.1,
+            widths,
+            layer,
+            targets: wanted.map(|wanted| QueuedDepth {
+                ids: ids.0,
+                normals: wanted.normals && has_normals,
+            }),
+            tolerant: test.tolerant(),
+            compiles_ahead: test.compiles_ahead(),
+        };
+        let mut queue = Queue {
             phase,
-            (&mut items, &mut transparent, &marks),
-            class.iter_visible().map(|(own, main)| (*own, *main)),
-            &Queue {
-                key,
-                ids: ids.0 || ids.1,
-                widths,
-                layer,
-                targets,
-            },
-        );
+            items: &mut items,
+            transparent: &mut transparent,
+            records: &mut records,
+            key,
+        };
+        queue.update((view.retained_view_entity, class), &changes);
+        phase.note_ahead(&test, &items);
+        let writes = key.targets.filter(|_| phase.has(Layer::OwnDepth));
         match writes {
             Some(targets) if queued != Some(&targets) => {
                 commands.entity(entity).insert(targets);
@@ -148,51 +167,135 @@ pub(super) fn queue_object_ids(
             _ => {}
         }
     }
-    phases.retain(|view, _| live.contains(view));
-}
-
-/// What is queued for a view.
-struct Queue {
-    key: MeshPipelineKey,
-    ids: bool,
-    /// The widths of lines are drawn with the ids.
-    widths: bool,
-    /// The layer of marked objects.
-    layer: bool,
-    /// What transparent meshes are drawn into.
-    targets: Option<QueuedDepth>,
-}
-
-/// Queues the visible objects of a view. Returns what transparent meshes are drawn into, if
-/// there are any.
-fn queue_objects(
-    phase: &mut SortedRenderPhase<ObjectIdItem>,
-    (items, transparent, marks): (&mut IdItems, &mut TransparentItems, &Marks),
-    visible: impl Iterator<Item = (Entity, MainEntity)>,
-    queue: &Queue,
-) -> Option<QueuedDepth> {
-    let mut writes = None;
-    let drawn = Drawn::Ids {
-        widths: queue.widths,
-    };
-    for object in visible {
-        if queue.ids
-            && let Some(item) = items.item(object, queue.key, drawn)
-        {
-            phase.add_transient(item);
-        } else if let Some(targets) = queue.targets
-            && let Some(item) = transparent.item(object, queue.key, targets)
-        {
-            phase.add_transient(item);
-            writes = Some(targets);
+    phases.0.retain(|_, phase| {
+        if !phase.live {
+            phase.clear(&mut records.ids);
         }
-        let marked = queue.layer && marks.of(object.1.id()).is_some();
-        if marked && let Some(item) = items.item(object, queue.key, Drawn::Marked) {
-            // Under a key of its own, because the object has an item already.
-            let own = (Entity::PLACEHOLDER, object.1);
-            phase.items.insert(own, item);
-            phase.transient_items.push(own);
+        phase.live
+    });
+}
+
+/// Makes the instances of a view.
+struct Queue<'a, 'w> {
+    phase: &'a mut ObjectIdPhase,
+    items: &'a mut IdItems<'w>,
+    transparent: &'a mut TransparentItems<'w>,
+    records: &'a mut Records<'w>,
+    key: PhaseKey,
+}
+
+impl Queue<'_, '_> {
+    /// Takes away and adds what has changed, or everything if the view has.
+    fn update(
+        &mut self,
+        (view, class): (RetainedViewEntity, &RenderVisibleEntitiesClass),
+        (dirty, changed): &Changes,
+    ) {
+        let outdated = dirty.must_wipe_specializations_for_view(view);
+        if self.phase.begin(self.key, outdated, &mut self.records.ids) {
+            for (_, mesh) in class.iter_visible() {
+                self.add(*mesh);
+            }
+        } else {
+            let pending = std::mem::take(&mut self.phase.pending);
+            for mesh in dirty.iter_to_dequeue(view, class).chain(&changed.0) {
+                self.phase.remove(*mesh, &mut self.records.ids);
+            }
+            for (_, mesh) in dirty.iter_to_queue(view, class, &pending) {
+                self.add(*mesh);
+            }
+            for mesh in changed.0.iter().filter(|mesh| is_visible(class, **mesh)) {
+                self.add(*mesh);
+            }
+        }
+        self.phase.settle();
+    }
+
+    /// Adds a visible mesh, if it is not there.
+    fn add(&mut self, mesh: MainEntity) {
+        if self.phase.contains(mesh) {
+            return;
+        }
+        let drawn = Drawn::Ids {
+            widths: self.key.widths,
+        };
+        let mut found = Err(Missing::NotDrawn);
+        if self.key.ids {
+            found = self.items.bin(mesh, self.key.view, drawn);
+        }
+        if let (Err(Missing::NotDrawn), Some(targets)) = (found, self.key.targets) {
+            found = self.transparent.bin(mesh, self.key.view, targets);
+        }
+        if let Ok((bin, input)) = found {
+            let record = self.records.of(mesh.id());
+            self.phase.add(
+                bin,
+                Instance {
+                    mesh,
+                    input,
+                    record,
+                },
+            );
+        }
+        if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
+            let marked = self.items.bin(mesh, self.key.view, Drawn::Marked);
+            if let Ok((bin, input)) = marked
+                && let Some(record) = self.records.mark(mesh.id())
+            {
+                self.phase.add(
+                    bin,
+                    Instance {
+                        mesh,
+                        input,
+                        record,
+                    },
+                );
+            }
+            if found.is_err() {
+                found = marked;
+            }
+        }
+        if let Err(Missing::NotLoaded) = found {
+            self.phase.pending.insert((Entity::PLACEHOLDER, mesh));
         }
     }
-    writes
+}
+
+fn is_visible(class: &RenderVisibleEntitiesClass, mesh: MainEntity) -> bool {
+    let listed = (class.entities_cpu_culling).binary_search_by_key(&mesh, |(_, main)| *main);
+    listed.is_ok() || class.entities_gpu_culling.contains_key(&mesh)
+}
+
+/// What is known of objects by their entities.
+#[derive(SystemParam)]
+pub(super) struct Records<'w> {
+    ids: ResMut<'w, ObjectIds>,
+    styles: Res<'w, ObjectStyles>,
+    groups: Res<'w, ObjectGroups>,
+    marks: Res<'w, Marks>,
+    writes: Res<'w, DepthWrites>,
+    sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
+}
+
+impl Records<'_> {
+    /// Id, style slot, first word of the sections and bits of the least alpha of a mesh.
+    fn of(&mut self, mesh: Entity) -> [u32; 4] {
+        let slot = self.styles.slots.get(&mesh).copied().unwrap_or(0);
+        let id = self.ids.give(self.groups.object(mesh));
+        let (buffer, tables) = &self.sections;
+        let start = buffer.start(tables, mesh).unwrap_or(0);
+        let cutoff = self.writes.cutoffs.get(&mesh);
+        [
+            u32::from(id),
+            u32::from(slot),
+            start,
+            cutoff.map_or(0, |cutoff| cutoff.to_bits()),
+        ]
+    }
+
+    /// The same of a marked mesh in the layer of marks.
+    fn mark(&mut self, mesh: Entity) -> Option<[u32; 4]> {
+        let (root, slot) = self.marks.of(mesh)?;
+        Some([u32::from(self.ids.give(root)), u32::from(slot), 0, 0])
+    }
 }

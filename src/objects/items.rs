@@ -1,6 +1,7 @@
-//! The draw commands and phase items of object ids.
+//! The draw commands of object ids, and the draw calls that meshes are part of.
 
 use bevy::{
+    asset::UntypedAssetId,
     ecs::{
         entity::Entity,
         system::{
@@ -9,13 +10,17 @@ use bevy::{
         },
     },
     log::{error_once, warn_once},
-    material::key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
-    mesh::Mesh,
+    material::{
+        MaterialProperties,
+        key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
+    },
+    mesh::{BaseMeshPipelineKey, Mesh},
     pbr::{
         DrawMesh, MeshPipelineKey, PreparedMaterial, RenderMaterialInstances, RenderMeshInstances,
-        SetMaterialBindGroup, SetMeshBindGroup, SetPrepassEmptyMaterialBindGroup,
-        SetPrepassViewBindGroup,
+        RenderMeshQueueData, SetMaterialBindGroup, SetMeshBindGroup,
+        SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup, SkinUniforms,
     },
+    platform::sync::Arc,
     render::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
@@ -24,8 +29,9 @@ use bevy::{
             DrawFunctionId, DrawFunctions, RenderCommand, RenderCommandResult, SetItemPipeline,
             TrackedRenderPass,
         },
-        render_resource::{PipelineCache, SpecializedMeshPipelines},
+        render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedMeshPipelines},
         sync_world::MainEntity,
+        view::ExtractedView,
     },
 };
 
@@ -33,8 +39,7 @@ use super::{
     depth_test::{DepthTest, TolerantIds},
     lightmaps::MeshLightmaps,
     line_widths::{WideMeshes, WidthBindings},
-    object_table::ObjectTable,
-    phase::{Layer, ObjectIdItem},
+    phase::{Bin, Layer, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::{
         IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
         reads_material,
@@ -45,23 +50,31 @@ use super::{
 pub(super) struct SetObjectTable<const I: usize>;
 
 impl<const I: usize> RenderCommand<ObjectIdItem> for SetObjectTable<I> {
-    type Param = SRes<ObjectTable>;
-    type ViewQuery = (Option<Read<WidthBindings>>, Option<Read<TolerantIds>>);
+    type Param = SRes<ObjectIdPhases>;
+    type ViewQuery = (
+        Read<ExtractedView>,
+        Option<Read<WidthBindings>>,
+        Option<Read<TolerantIds>>,
+    );
     type ItemQuery = ();
 
     fn render<'w>(
         item: &ObjectIdItem,
-        (widths, tolerant): (Option<&'w WidthBindings>, Option<&'w TolerantIds>),
+        (view, widths, tolerant): (
+            &'w ExtractedView,
+            Option<&'w WidthBindings>,
+            Option<&'w TolerantIds>,
+        ),
         _entity: Option<()>,
-        table: SystemParamItem<'w, '_, Self::Param>,
+        phases: SystemParamItem<'w, '_, Self::Param>,
         pass: &mut TrackedRenderPass<'w>,
     ) -> RenderCommandResult {
         // Only the pipelines of ids draw widths, and compare depth with a tolerance.
         let own = tolerant.map(|tolerant| &tolerant.bind_group);
         let own = own.or(widths.map(|widths| &widths.0));
-        let bind_group = match own.filter(|_| item.layer == Layer::Prepass) {
-            Some(own) => own,
-            None => &table.into_inner().bind_group,
+        let bind_group = match own.filter(|_| item.bin.layer == Layer::Prepass) {
+            Some(own) => own.as_ref(),
+            None => phases.into_inner().bind_group(view.retained_view_entity),
         };
         let Some(bind_group) = bind_group else {
             return RenderCommandResult::Skip;
@@ -114,22 +127,110 @@ pub(super) enum Drawn {
     Marked,
 }
 
-/// Makes the phase items of objects.
+/// Why a mesh is in no bin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Missing {
+    /// It is not drawn into this layer.
+    NotDrawn,
+    /// It may be drawn when its assets have loaded.
+    NotLoaded,
+}
+
+/// A mesh with what its draw call depends on.
+pub(super) struct DrawnMesh<'a> {
+    pub instance: RenderMeshQueueData<'a>,
+    pub mesh: &'a RenderMesh,
+    pub material: UntypedAssetId,
+    pub properties: &'a Arc<MaterialProperties>,
+    lightmapped: bool,
+}
+
+impl DrawnMesh<'_> {
+    /// The key of its pipeline. `uses_material`: whether that reads the material.
+    pub fn mesh_key(&self, view: MeshPipelineKey, uses_material: bool) -> MeshPipelineKey {
+        let mut key = view | MeshPipelineKey::from_bits_retain(self.mesh.key_bits.bits());
+        key.set(MeshPipelineKey::LIGHTMAPPED, self.lightmapped);
+        key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
+        key
+    }
+
+    pub fn material_key(&self, mesh_key: MeshPipelineKey) -> ErasedMaterialPipelineKey {
+        ErasedMaterialPipelineKey {
+            type_id: self.material.type_id(),
+            mesh_key: ErasedMeshPipelineKey::new(mesh_key),
+            material_key: self.properties.material_key.clone(),
+        }
+    }
+}
+
+/// The meshes and materials of the engine.
+#[derive(SystemParam)]
+pub(super) struct DrawnMeshes<'w> {
+    draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
+    meshes: Res<'w, RenderAssets<RenderMesh>>,
+    instances: Res<'w, RenderMeshInstances>,
+    lightmaps: MeshLightmaps<'w>,
+    skins: Res<'w, SkinUniforms>,
+    materials: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
+    material_instances: Res<'w, RenderMaterialInstances>,
+}
+
+impl DrawnMeshes<'_> {
+    pub fn get(&self, entity: MainEntity) -> Result<DrawnMesh<'_>, Missing> {
+        let found = || {
+            let instance = self.instances.render_mesh_queue_data(entity)?;
+            let material = self.material_instances.instances.get(&entity)?.asset_id;
+            Some(DrawnMesh {
+                mesh: self.meshes.get(instance.mesh_asset_id())?,
+                instance,
+                material,
+                properties: &self.materials.get(material)?.properties,
+                lightmapped: self.lightmaps.has(entity),
+            })
+        };
+        found().ok_or(Missing::NotLoaded)
+    }
+
+    /// The bin of a mesh, and where the engine has uploaded it.
+    pub fn bin(
+        &self,
+        entity: MainEntity,
+        drawn: &DrawnMesh,
+        pipeline: CachedRenderPipelineId,
+        (layer, uses_material): (Layer, bool),
+    ) -> (Bin, u32) {
+        // With the CPU's instances, morph targets may be bound for each mesh.
+        let on_cpu = matches!(*self.instances, RenderMeshInstances::CpuBuilding(_));
+        let morphed = drawn
+            .mesh
+            .key_bits
+            .contains(BaseMeshPipelineKey::MORPH_TARGETS);
+        let alone = !drawn.instance.should_batch() || drawn.lightmapped || (on_cpu && morphed);
+        let bin = Bin {
+            layer,
+            pipeline,
+            draw_function: draw_function(&self.draw_functions, uses_material),
+            material: uses_material.then(|| drawn.instance.material_bindings_index().group.0),
+            mesh: drawn.instance.mesh_asset_id(),
+            skinned: self.skins.skin_byte_offset(entity).is_some(),
+            alone: alone.then_some(entity),
+            ahead: None,
+        };
+        (bin, *drawn.instance.current_uniform_index)
+    }
+}
+
+/// Finds the bins of objects.
 #[derive(SystemParam)]
 pub(super) struct IdItems<'w> {
-    draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
+    drawn: DrawnMeshes<'w>,
     shared: Res<'w, ObjectIdPipeline>,
     pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
     marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
     wide: Res<'w, WideMeshes>,
     test: Res<'w, DepthTest>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
-    cache: Res<'w, PipelineCache>,
-    meshes: Res<'w, RenderAssets<RenderMesh>>,
-    instances: Res<'w, RenderMeshInstances>,
-    lightmaps: MeshLightmaps<'w>,
-    materials: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
-    material_instances: Res<'w, RenderMaterialInstances>,
+    pub cache: Res<'w, PipelineCache>,
 }
 
 impl IdItems<'_> {
@@ -148,61 +249,60 @@ impl IdItems<'_> {
         }
     }
 
-    /// The phase item of an object; `None` if the depth prepass does not draw it.
-    pub fn item(
+    /// The bin of an object, and where the engine has uploaded it.
+    pub fn bin(
         &mut self,
-        object: (Entity, MainEntity),
+        entity: MainEntity,
         view_key: MeshPipelineKey,
-        drawn: Drawn,
-    ) -> Option<ObjectIdItem> {
-        let instance = self.instances.render_mesh_queue_data(object.1)?;
-        let mesh = self.meshes.get(instance.mesh_asset_id())?;
-        let material_instance = self.material_instances.instances.get(&object.1)?;
-        let material = self.materials.get(material_instance.asset_id)?;
-        if !in_prepass(&material.properties) {
-            return None;
+        what: Drawn,
+    ) -> Result<(Bin, u32), Missing> {
+        let drawn = self.drawn.get(entity)?;
+        if !in_prepass(drawn.properties) {
+            return Err(Missing::NotDrawn);
         }
-        let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
-        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, self.lightmaps.has(object.1));
-        let uses_material = reads_material(&material.properties);
-        mesh_key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
-        let key = ErasedMaterialPipelineKey {
-            type_id: material_instance.asset_id.type_id(),
-            mesh_key: ErasedMeshPipelineKey::new(mesh_key),
-            material_key: material.properties.material_key.clone(),
-        };
-        let (variant, layer) = match drawn {
-            Drawn::Marked => (IdVariant::default(), Layer::Marked),
-            Drawn::Ids { widths } => {
-                let variant = self.variant(object.1.id(), mesh, widths);
-                (variant, Layer::Prepass)
-            }
-        };
-        let specializer = self.shared.specializer(&material.properties, variant);
-        let (cache, layout) = (&self.cache, &mesh.layout);
-        if layer == Layer::Prepass && self.test.compiles_ahead() {
-            let tolerant = IdVariant {
-                tolerant: true,
-                ..variant
-            };
-            let key = (key.clone(), tolerant);
-            let pipeline = self.pipelines.specialize(cache, &specializer, key, layout);
-            let compiled = pipeline.is_ok_and(|id| cache.get_render_pipeline(id).is_some());
-            self.test.note_ahead(compiled);
-        }
-        let key = (key, variant);
-        let pipeline = match layer {
-            Layer::Marked => {
+        let uses_material = reads_material(drawn.properties);
+        let key = drawn.material_key(drawn.mesh_key(view_key, uses_material));
+        let (cache, layout) = (&self.cache, &drawn.mesh.layout);
+        let specializer = self.shared.specializer(drawn.properties);
+        let mut ahead = None;
+        let (layer, pipeline) = match what {
+            Drawn::Marked => {
+                let key = (key, IdVariant::default());
                 let specializer = MarkSpecializer(specializer);
-                self.marked.specialize(cache, &specializer, key, layout)
+                let pipeline = self.marked.specialize(cache, &specializer, key, layout);
+                (Layer::Marked, pipeline)
             }
-            _ => self.pipelines.specialize(cache, &specializer, key, layout),
+            Drawn::Ids { widths } => {
+                let variant = self.variant(entity.id(), drawn.mesh, widths);
+                let mut specialize = |variant| {
+                    let key = (key.clone(), variant);
+                    self.pipelines.specialize(cache, &specializer, key, layout)
+                };
+                if self.test.compiles_ahead() {
+                    let tolerant = IdVariant {
+                        tolerant: true,
+                        ..variant
+                    };
+                    ahead = specialize(tolerant).ok();
+                }
+                (Layer::Prepass, specialize(variant))
+            }
         };
         let pipeline = pipeline
-            .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
-            .ok()?;
-        let draw_function = draw_function(&self.draw_functions, uses_material);
-        let drawn = (mesh.indexed(), layer);
-        Some(ObjectIdItem::new(object, pipeline, draw_function, drawn))
+            .inspect_err(|error| error_once!("no object id for {entity:?}: {error}"))
+            .map_err(|_| Missing::NotDrawn)?;
+        let (bin, input) = self
+            .drawn
+            .bin(entity, &drawn, pipeline, (layer, uses_material));
+        Ok((Bin { ahead, ..bin }, input))
+    }
+}
+
+impl ObjectIdPhase {
+    /// Notes which of the pipelines that compile ahead of their use are ready.
+    pub fn note_ahead(&self, test: &DepthTest, items: &IdItems) {
+        for ahead in self.bins().filter_map(|(bin, _)| bin.ahead) {
+            test.note_ahead(items.cache.get_render_pipeline(ahead).is_some());
+        }
     }
 }

@@ -23,6 +23,7 @@ use bevy::{
             TextureUsages, TextureView, UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
+        sync_world::MainEntity,
         texture::TextureCache,
         view::{ExtractedView, RetainedViewEntity},
     },
@@ -30,8 +31,9 @@ use bevy::{
 
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
+    changes::ChangedObjects,
     inherit::inherit,
-    object_table::ObjectTable,
+    phase::ObjectIdPhases,
     pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
     widths::WIDTH_FORMAT,
@@ -105,8 +107,14 @@ pub(super) fn find_wide_meshes(
     }
 }
 
-pub(super) fn extract_wide_meshes(main: Extract<Res<WideMeshes>>, mut meshes: ResMut<WideMeshes>) {
+pub(super) fn extract_wide_meshes(
+    main: Extract<Res<WideMeshes>>,
+    mut meshes: ResMut<WideMeshes>,
+    mut changed: ResMut<ChangedObjects>,
+) {
     if main.is_changed() {
+        let different = meshes.0.symmetric_difference(&main.0);
+        changed.0.extend(different.copied().map(MainEntity::from));
         meshes.clone_from(&main);
     }
 }
@@ -138,7 +146,7 @@ impl WidthViews {
 }
 
 /// On a view whose widths are drawn: what the pass binds instead of
-/// [`ObjectTable::bind_group`]; `None` if there is no object.
+/// `ObjectIdPhase::bind_group`; `None` if there is no object.
 #[derive(Component)]
 pub(super) struct WidthBindings(pub Option<BindGroup>);
 
@@ -146,7 +154,7 @@ pub(super) struct WidthBindings(pub Option<BindGroup>);
 #[derive(SystemParam)]
 pub(super) struct Drawing<'w> {
     queued: Res<'w, WidthViews>,
-    table: Res<'w, ObjectTable>,
+    phases: Res<'w, ObjectIdPhases>,
     sections: Res<'w, SectionBuffer>,
     shared: Res<'w, ObjectIdPipeline>,
     cache: Res<'w, PipelineCache>,
@@ -164,16 +172,15 @@ impl Drawing<'_> {
     /// prepass, if depth is compared with a tolerance.
     pub fn bind_group(
         &self,
-        request: &IdRequest,
+        (view, request): (RetainedViewEntity, &IdRequest),
         widths: bool,
         depth: Option<&TextureView>,
     ) -> Option<BindGroup> {
-        // Without an object there is no group either.
-        self.table.bind_group.as_ref()?;
         let mut pressure = UniformBuffer::from(request.pressure.unwrap_or_default());
+        let [objects, sections] = self.phases.0.get(&view)?.bound(&self.sections)?;
         let mut entries = vec![
-            gpu::entry(0, self.table.objects.binding()?),
-            gpu::entry(1, self.sections.buffer()?.as_entire_binding()),
+            gpu::entry(0, objects.as_entire_binding()),
+            gpu::entry(1, sections.as_entire_binding()),
         ];
         let mut layout = if widths {
             pressure.write_buffer(&self.device, &self.queue);
@@ -218,7 +225,8 @@ pub(super) fn prepare_line_widths(
         let size = (request.size, request.samples);
         let descriptor = gpu::texture("comics_line_widths", size, WIDTH_FORMAT, usage);
         let texture = ViewLineWidths::from(textures.get(&drawing.device, descriptor));
-        let bindings = WidthBindings(drawing.bind_group(request, true, None));
+        let bindings =
+            WidthBindings(drawing.bind_group((view.retained_view_entity, request), true, None));
         target.insert((texture, bindings));
     }
     for entity in &stale {

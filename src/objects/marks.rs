@@ -5,7 +5,7 @@ use bevy::{
     app::{App, PostUpdate},
     color::{Color, Srgba},
     ecs::{
-        change_detection::DetectChangesMut,
+        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::Children,
@@ -20,6 +20,7 @@ use bevy::{
 };
 
 use super::{
+    changes::ChangedObjects,
     inherit::inherit,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
@@ -229,8 +230,14 @@ fn assign_marks(
     }
 }
 
-pub(super) fn extract_marks(main: Extract<Res<Marks>>, mut marks: ResMut<Marks>) {
-    if *marks != **main {
+pub(super) fn extract_marks(
+    main: Extract<Res<Marks>>,
+    mut marks: ResMut<Marks>,
+    mut changed: ResMut<ChangedObjects>,
+) {
+    if main.is_changed() {
+        changed.note(&marks.styles.slots, &main.styles.slots);
+        changed.note(&marks.roots, &main.roots);
         marks.clone_from(&main);
     }
 }

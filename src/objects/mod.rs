@@ -19,6 +19,8 @@ mod ids;
 #[cfg(feature = "objects")]
 mod inherit;
 #[cfg(feature = "objects")]
+mod instances;
+#[cfg(feature = "objects")]
 mod items;
 #[cfg(feature = "objects")]
 mod layer;
@@ -30,9 +32,7 @@ mod line_widths;
 mod marks;
 mod object_depths;
 #[cfg(feature = "objects")]
-mod object_id;
-#[cfg(feature = "objects")]
-mod object_table;
+mod object_ids;
 #[cfg(feature = "objects")]
 mod phase;
 #[cfg(feature = "objects")]
@@ -48,6 +48,8 @@ mod table;
 mod transparent;
 mod widths;
 
+#[cfg(feature = "objects")]
+mod changes;
 #[cfg(feature = "objects")]
 mod components;
 #[cfg(feature = "objects")]
@@ -69,7 +71,9 @@ pub(crate) use marks::Marks;
 #[cfg(feature = "objects")]
 pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
-pub use object_id::object_id;
+pub use object_ids::ObjectIds;
+#[cfg(feature = "objects")]
+pub use phase::ObjectWork;
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
@@ -175,7 +179,7 @@ pub(crate) struct IdRequest {
     allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub struct ViewObjectIds {
-    /// `Rg16Uint`: red is the [`object_id`] (0: no object). The low byte of
+    /// `Rg16Uint`: red is the id of the object ([`ObjectIds`]; 0: no object). The low byte of
     /// green is the slot of the mesh's outline style (0: it has none), the high byte the
     /// section of the mesh (0: it has none; see [`MeshSections`]).
     pub texture: Texture,

@@ -1,34 +1,56 @@
-//! The phase item of an object in the pass that draws ids.
+//! The meshes that the pass of object ids draws in each view, in bins: those of a bin are the
+//! instances of one draw call. Bins are kept from frame to frame, so a frame without changes does
+//! nothing for each mesh.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
 use bevy::{
-    ecs::entity::{Entity, EntityHash},
-    math::FloatOrd,
+    asset::AssetId,
+    ecs::{entity::Entity, resource::Resource, world::World},
+    mesh::Mesh,
+    pbr::MeshPipelineKey,
+    platform::collections::{HashMap, HashSet},
     render::{
         render_phase::{
-            CachedRenderPipelinePhaseItem, DrawFunctionId, PhaseItem, PhaseItemExtraIndex,
-            SortedPhaseItem, SortedRenderPhase,
+            CachedRenderPipelinePhaseItem, DrawError, DrawFunctionId, DrawFunctions, PhaseItem,
+            PhaseItemExtraIndex, TrackedRenderPass,
         },
-        render_resource::CachedRenderPipelineId,
-        sync_world::MainEntity,
-        view::ExtractedView,
+        render_resource::{BindGroup, CachedRenderPipelineId},
+        sync_world::{MainEntity, MainEntityHashMap},
+        view::RetainedViewEntity,
     },
 };
-use indexmap::IndexMap;
 
+use super::{QueuedDepth, instances::InstanceBuffers, object_ids::ObjectIds};
+
+/// A draw call.
 pub(crate) struct ObjectIdItem {
-    pub entity: (Entity, MainEntity),
-    pub pipeline: CachedRenderPipelineId,
-    pub draw_function: DrawFunctionId,
-    pub batch_range: Range<u32>,
-    pub extra_index: PhaseItemExtraIndex,
-    pub indexed: bool,
-    pub layer: Layer,
+    pub bin: Bin,
+    /// The first mesh of the bin: the draw functions bind what it has.
+    mesh: MainEntity,
+    instances: Range<u32>,
+    extra_index: PhaseItemExtraIndex,
 }
 
-/// What an item is drawn into. In a sorted phase, items follow in this order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// What meshes of one draw call have in common. Draw calls follow in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct Bin {
+    pub layer: Layer,
+    pub pipeline: CachedRenderPipelineId,
+    pub draw_function: DrawFunctionId,
+    /// `None` if the pipeline does not read the material.
+    pub material: Option<u32>,
+    pub mesh: AssetId<Mesh>,
+    /// Whether the bindings of a skin are bound.
+    pub skinned: bool,
+    /// A mesh that is drawn alone.
+    pub alone: Option<MainEntity>,
+    /// The pipeline of the tolerant depth test, while it compiles ahead of its use.
+    pub ahead: Option<CachedRenderPipelineId>,
+}
+
+/// What an item is drawn into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Layer {
     /// The object ids: the depth prepass has the mesh.
     Prepass,
@@ -38,59 +60,25 @@ pub(crate) enum Layer {
     Marked,
 }
 
-impl ObjectIdItem {
-    /// An item that is not in a batch yet.
-    pub fn new(
-        entity: (Entity, MainEntity),
-        pipeline: CachedRenderPipelineId,
-        draw_function: DrawFunctionId,
-        (indexed, layer): (bool, Layer),
-    ) -> Self {
-        Self {
-            entity,
-            pipeline,
-            draw_function,
-            batch_range: 0..1,
-            extra_index: PhaseItemExtraIndex::None,
-            indexed,
-            layer,
-        }
-    }
-
-    /// The items of a layer in a sorted phase.
-    pub fn of(phase: &SortedRenderPhase<Self>, layer: Layer) -> Range<usize> {
-        let before = |layers: fn(Layer, Layer) -> bool| {
-            phase
-                .items
-                .partition_point(|_, item| layers(item.layer, layer))
-        };
-        before(|a, b| a < b)..before(|a, b| a <= b)
-    }
-}
-
 impl PhaseItem for ObjectIdItem {
-    // Instances must not be batched: the first instance index of an item is the index of
-    // its object in the table.
-    const AUTOMATIC_BATCHING: bool = false;
-
     fn entity(&self) -> Entity {
-        self.entity.0
+        Entity::PLACEHOLDER
     }
 
     fn main_entity(&self) -> MainEntity {
-        self.entity.1
+        self.mesh
     }
 
     fn draw_function(&self) -> DrawFunctionId {
-        self.draw_function
+        self.bin.draw_function
     }
 
     fn batch_range(&self) -> &Range<u32> {
-        &self.batch_range
+        &self.instances
     }
 
     fn batch_range_mut(&mut self) -> &mut Range<u32> {
-        &mut self.batch_range
+        &mut self.instances
     }
 
     fn extra_index(&self) -> PhaseItemExtraIndex {
@@ -98,35 +86,313 @@ impl PhaseItem for ObjectIdItem {
     }
 
     fn batch_range_and_extra_index_mut(&mut self) -> (&mut Range<u32>, &mut PhaseItemExtraIndex) {
-        (&mut self.batch_range, &mut self.extra_index)
-    }
-}
-
-impl SortedPhaseItem for ObjectIdItem {
-    // Layers follow each other. Within each, any order is right: sort by pipeline.
-    type SortKey = (FloatOrd, usize);
-
-    fn sort_key(&self) -> Self::SortKey {
-        (FloatOrd(f32::from(self.layer as u8)), self.pipeline.id())
-    }
-
-    fn sort(items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>) {
-        items.sort_by_key(|_, item| (item.layer, item.pipeline.id()));
-    }
-
-    fn recalculate_sort_keys(
-        _items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>,
-        _view: &ExtractedView,
-    ) {
-    }
-
-    fn indexed(&self) -> bool {
-        self.indexed
+        (&mut self.instances, &mut self.extra_index)
     }
 }
 
 impl CachedRenderPipelinePhaseItem for ObjectIdItem {
     fn cached_pipeline(&self) -> CachedRenderPipelineId {
-        self.pipeline
+        self.bin.pipeline
+    }
+}
+
+/// A mesh in a bin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Instance {
+    pub mesh: MainEntity,
+    /// Where the engine has uploaded the mesh's transform.
+    pub input: u32,
+    /// What `ids.wgsl` reads of it. The first is the id that its object gave it.
+    pub record: [u32; 4],
+}
+
+/// [`Instance::input`] of a mesh that has left its bin.
+const GONE: u32 = u32::MAX;
+
+/// The meshes of a bin, sorted, except for those that were added since the last
+/// [`ObjectIdPhase::settle`].
+#[derive(Default)]
+struct Contents {
+    bin: Option<Bin>,
+    instances: Vec<Instance>,
+}
+
+/// What the pipelines of a view's bins depend on, besides meshes and materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PhaseKey {
+    pub view: MeshPipelineKey,
+    pub ids: bool,
+    /// The widths of lines are drawn with the ids.
+    pub widths: bool,
+    /// The layer of marked objects.
+    pub layer: bool,
+    /// What transparent meshes are drawn into.
+    pub targets: Option<QueuedDepth>,
+    /// Depth is compared with a tolerance.
+    pub tolerant: bool,
+    /// The pipelines that do so compile ahead of their use.
+    pub compiles_ahead: bool,
+}
+
+/// The bins of a view.
+#[derive(Default)]
+pub(crate) struct ObjectIdPhase {
+    key: Option<PhaseKey>,
+    bins: BTreeMap<Bin, usize>,
+    contents: Vec<Contents>,
+    /// Unused places of `contents`.
+    free: Vec<usize>,
+    /// The contents that have changed since the last [`settle`](Self::settle).
+    touched: HashSet<usize>,
+    /// The contents that a mesh is in: of its ids or its own depth, and of its mark.
+    places: MainEntityHashMap<[Option<u32>; 2]>,
+    /// Meshes whose assets have not loaded.
+    pub pending: HashSet<(Entity, MainEntity)>,
+    /// Whether draw calls and buffers have yet to follow the bins.
+    pub changed: bool,
+    /// The draw calls of this frame.
+    pub items: Vec<ObjectIdItem>,
+    pub buffers: InstanceBuffers,
+    /// Whether the view was drawn in this frame.
+    pub live: bool,
+    /// Meshes that were added so far.
+    added: usize,
+}
+
+impl ObjectIdPhase {
+    /// Empties the bins if what their pipelines depend on has changed; returns whether it has.
+    pub fn begin(&mut self, key: PhaseKey, outdated: bool, ids: &mut ObjectIds) -> bool {
+        let is_new = outdated || self.key != Some(key);
+        if is_new {
+            self.clear(ids);
+            self.key = Some(key);
+        }
+        is_new
+    }
+
+    /// Empties the bins.
+    pub fn clear(&mut self, ids: &mut ObjectIds) {
+        self.changed |= !self.bins.is_empty();
+        for instance in self
+            .contents
+            .iter()
+            .flat_map(|contents| &contents.instances)
+        {
+            ids.take(instance.record[0] as u16);
+        }
+        self.bins.clear();
+        self.contents.clear();
+        self.free.clear();
+        self.touched.clear();
+        self.places.clear();
+        self.pending.clear();
+    }
+
+    pub fn contains(&self, mesh: MainEntity) -> bool {
+        self.places.contains_key(&mesh)
+    }
+
+    /// Takes a mesh out of its bins. It must not have been added since the last
+    /// [`settle`](Self::settle).
+    pub fn remove(&mut self, mesh: MainEntity, ids: &mut ObjectIds) {
+        for bin in self.places.remove(&mesh).into_iter().flatten().flatten() {
+            let instances = &mut self.contents[bin as usize].instances;
+            if let Ok(at) = instances.binary_search_by_key(&mesh, |instance| instance.mesh) {
+                instances[at].input = GONE;
+                ids.take(instances[at].record[0] as u16);
+                self.touched.insert(bin as usize);
+            }
+        }
+    }
+
+    /// Adds a mesh that is not in a bin of this kind.
+    pub fn add(&mut self, bin: Bin, instance: Instance) {
+        let at = *self.bins.entry(bin).or_insert_with(|| {
+            let at = self.free.pop().unwrap_or(self.contents.len());
+            self.contents
+                .resize_with(self.contents.len().max(at + 1), Default::default);
+            self.contents[at].bin = Some(bin);
+            at
+        });
+        self.added += 1;
+        self.contents[at].instances.push(instance);
+        self.touched.insert(at);
+        let kind = usize::from(bin.layer == Layer::Marked);
+        self.places.entry(instance.mesh).or_default()[kind] = Some(at as u32);
+    }
+
+    /// Ends the changes of a frame.
+    pub fn settle(&mut self) {
+        self.changed |= !self.touched.is_empty();
+        for at in self.touched.drain() {
+            let contents = &mut self.contents[at];
+            let instances = &mut contents.instances;
+            instances.retain(|instance| instance.input != GONE);
+            instances.sort_by_key(|instance| instance.mesh);
+            if instances.is_empty()
+                && let Some(bin) = contents.bin.take()
+            {
+                self.bins.remove(&bin);
+                self.free.push(at);
+            }
+        }
+    }
+
+    /// The bins in the order of their draw calls, and their meshes.
+    pub fn bins(&self) -> impl Iterator<Item = (Bin, &[Instance])> {
+        let bins = self.bins.iter();
+        bins.map(|(bin, at)| (*bin, self.contents[*at].instances.as_slice()))
+    }
+
+    pub fn has(&self, layer: Layer) -> bool {
+        self.bins.keys().any(|bin| bin.layer == layer)
+    }
+
+    /// Makes the draw call of a bin.
+    pub fn draw_call(bin: Bin, mesh: MainEntity, instances: Range<u32>) -> ObjectIdItem {
+        ObjectIdItem {
+            bin,
+            mesh,
+            instances,
+            extra_index: PhaseItemExtraIndex::None,
+        }
+    }
+
+    /// Records the draw calls of a layer.
+    pub fn render<'w>(
+        &self,
+        pass: &mut TrackedRenderPass<'w>,
+        (world, view): (&'w World, Entity),
+        layer: Layer,
+    ) -> Result<(), DrawError> {
+        let functions = world.resource::<DrawFunctions<ObjectIdItem>>();
+        let mut functions = functions.write();
+        functions.prepare(world);
+        for item in self.items.iter().filter(|item| item.bin.layer == layer) {
+            if let Some(function) = functions.get_mut(item.bin.draw_function) {
+                function.draw(world, pass, view, item)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The bins of all views.
+#[derive(Resource, Default)]
+pub(crate) struct ObjectIdPhases(pub HashMap<RetainedViewEntity, ObjectIdPhase>);
+
+/// What the passes of object ids do in all views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ObjectWork {
+    /// Draw calls of a frame.
+    pub draw_calls: usize,
+    /// Meshes in these draw calls.
+    pub instances: usize,
+    /// Meshes that were added to them, in all frames so far.
+    pub queued: usize,
+}
+
+impl ObjectWork {
+    /// Reads it from the render world.
+    pub fn of(render_world: &World) -> Self {
+        let phases = render_world.get_resource::<ObjectIdPhases>();
+        let phases = phases.into_iter().flat_map(|phases| phases.0.values());
+        phases.fold(Self::default(), |sum, phase| Self {
+            draw_calls: sum.draw_calls + phase.items.len(),
+            instances: sum.instances + phase.items.iter().map(|i| i.instances.len()).sum::<usize>(),
+            queued: sum.queued + phase.added,
+        })
+    }
+}
+
+impl ObjectIdPhases {
+    /// What the passes of a view bind.
+    pub fn bind_group(&self, view: RetainedViewEntity) -> Option<&BindGroup> {
+        self.0.get(&view)?.bind_group()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bin(mesh: u128, layer: Layer) -> Bin {
+        Bin {
+            layer,
+            pipeline: CachedRenderPipelineId::INVALID,
+            draw_function: DrawFunctions::<ObjectIdItem>::default()
+                .write()
+                .add(Nothing),
+            material: None,
+            mesh: AssetId::from(bevy::asset::uuid::Uuid::from_u128(mesh)),
+            skinned: false,
+            alone: None,
+            ahead: None,
+        }
+    }
+
+    struct Nothing;
+
+    impl bevy::render::render_phase::Draw<ObjectIdItem> for Nothing {
+        fn draw<'w>(
+            &mut self,
+            _: &'w World,
+            _: &mut TrackedRenderPass<'w>,
+            _: Entity,
+            _: &ObjectIdItem,
+        ) -> Result<(), DrawError> {
+            Ok(())
+        }
+    }
+
+    /// After any changes, the bins are those of a phase to which the same meshes were added.
+    #[test]
+    fn bins_that_changed_are_those_of_a_new_phase() {
+        let mut phase = ObjectIdPhase::default();
+        let mut ids = ObjectIds::default();
+        let mut meshes: BTreeMap<MainEntity, (u128, bool, u32)> = BTreeMap::default();
+        let mut random = 1_u32;
+        for frame in 0..300 {
+            let mut changed = HashSet::new();
+            for _ in 0..frame % 7 {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let mesh = MainEntity::from(Entity::from_raw_u32(random >> 27).expect("small"));
+                if !changed.insert(mesh) {
+                    continue;
+                }
+                phase.remove(mesh, &mut ids);
+                meshes.remove(&mesh);
+                if random & 8 == 0 {
+                    let drawn = (u128::from(random >> 4 & 3), random & 4 == 0, random);
+                    meshes.insert(mesh, drawn);
+                    add(&mut phase, mesh, drawn);
+                }
+            }
+            phase.settle();
+            let mut new = ObjectIdPhase::default();
+            for (mesh, drawn) in &meshes {
+                add(&mut new, *mesh, *drawn);
+            }
+            new.settle();
+            let [bins, wanted] = [&phase, &new].map(|phase| {
+                let bins = phase.bins();
+                bins.map(|(bin, meshes)| (bin, meshes.to_vec()))
+                    .collect::<Vec<_>>()
+            });
+            assert_eq!(bins, wanted, "frame {frame}");
+        }
+    }
+
+    fn add(phase: &mut ObjectIdPhase, mesh: MainEntity, (of, marked, input): (u128, bool, u32)) {
+        let record = [0, input, 0, 0];
+        let instance = Instance {
+            mesh,
+            input,
+            record,
+        };
+        phase.add(bin(of, Layer::Prepass), instance);
+        if marked {
+            phase.add(bin(of, Layer::Marked), instance);
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The pipelines that draw the ids of objects.
 
+use std::ops::Deref;
+
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     ecs::{
@@ -30,10 +32,12 @@ use bevy::{
 use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
 use crate::gpu::definitions;
 
-/// The parts that all pipelines of this pass have in common.
+/// What all pipelines of this pass have in common.
 #[derive(Resource)]
-pub(super) struct ObjectIdPipeline {
-    pub prepass: PrepassPipeline,
+pub(super) struct ObjectIdPipeline(Arc<IdParts>);
+
+pub(super) struct IdParts {
+    prepass: PrepassPipeline,
     pub layout: BindGroupLayoutDescriptor,
     /// The layout if the widths of lines are drawn too.
     pub with_widths: BindGroupLayoutDescriptor,
@@ -56,7 +60,7 @@ pub(super) fn init_object_id_pipeline(
             uniform_buffer::<Pressure>(false),
         ),
     );
-    commands.insert_resource(ObjectIdPipeline {
+    commands.insert_resource(ObjectIdPipeline(Arc::new(IdParts {
         shades_samples: has_sample_shading(&adapter),
         prepass: prepass.clone(),
         layout: BindGroupLayoutDescriptor::new("comics_objects", &entries[..2]),
@@ -65,7 +69,7 @@ pub(super) fn init_object_id_pipeline(
             load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
             load_embedded_asset!(assets.as_ref(), "sections.wgsl"),
         ],
-    });
+    })));
 }
 
 pub(super) fn reads_material(properties: &MaterialProperties) -> bool {
@@ -124,34 +128,41 @@ impl IdVariant {
     }
 }
 
+impl Deref for ObjectIdPipeline {
+    type Target = IdParts;
+
+    fn deref(&self) -> &IdParts {
+        &self.0
+    }
+}
+
 impl ObjectIdPipeline {
-    pub fn specializer(
-        &self,
-        properties: &Arc<MaterialProperties>,
-        variant: IdVariant,
-    ) -> ObjectIdSpecializer {
-        let layout = if variant.widths {
-            &self.with_widths
-        } else {
-            &self.layout
-        };
+    pub fn parts(&self) -> Arc<IdParts> {
+        self.0.clone()
+    }
+
+    pub fn specializer(&self, properties: &Arc<MaterialProperties>) -> ObjectIdSpecializer {
         ObjectIdSpecializer {
-            prepass: PrepassPipelineSpecializer {
-                pipeline: self.prepass.clone(),
-                properties: properties.clone(),
-            },
-            layout: layout.clone(),
-            shader: self.shaders[usize::from(variant.sections)].clone(),
-            shades_samples: self.shades_samples,
+            ids: self.parts(),
+            properties: properties.clone(),
         }
     }
 }
 
+impl IdParts {
+    /// The engine's pipeline of the prepass.
+    pub fn prepass_of(&self, properties: &Arc<MaterialProperties>) -> PrepassPipelineSpecializer {
+        PrepassPipelineSpecializer {
+            pipeline: self.prepass.clone(),
+            properties: properties.clone(),
+        }
+    }
+}
+
+/// Made for every mesh, so it shares what only a new pipeline needs.
 pub(super) struct ObjectIdSpecializer {
-    prepass: PrepassPipelineSpecializer,
-    layout: BindGroupLayoutDescriptor,
-    shader: Handle<Shader>,
-    shades_samples: bool,
+    ids: Arc<IdParts>,
+    properties: Arc<MaterialProperties>,
 }
 
 impl SpecializedMeshPipeline for ObjectIdSpecializer {
@@ -162,13 +173,23 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         (key, variant): Self::Key,
         layout: &MeshVertexBufferLayoutRef,
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.prepass.specialize(key, layout)?;
+        let IdParts {
+            shaders,
+            shades_samples,
+            ..
+        } = &*self.ids;
+        let bindings = if variant.widths {
+            &self.ids.with_widths
+        } else {
+            &self.ids.layout
+        };
+        let mut descriptor = (self.ids.prepass_of(&self.properties)).specialize(key, layout)?;
         descriptor.label = Some("comics_object_ids".into());
         let multisampled = descriptor.multisample.count > 1;
         descriptor.layout[1] = if variant.tolerant {
-            with_prepass_depth(&self.layout, multisampled)
+            with_prepass_depth(bindings, multisampled)
         } else {
-            self.layout.clone()
+            bindings.clone()
         };
         let formats: &[TextureFormat] = if variant.widths {
             &[ID_FORMAT, WIDTH_FORMAT]
@@ -182,12 +203,12 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
         if variant.tolerant && multisampled {
             shader_defs.push("TOLERANT_MULTISAMPLED".into());
-            if self.shades_samples {
+            if *shades_samples {
                 shader_defs.push("SAMPLE_SHADING".into());
             }
         }
         descriptor.fragment = Some(FragmentState {
-            shader: self.shader.clone(),
+            shader: shaders[usize::from(variant.sections)].clone(),
             shader_defs,
             entry_point: Some("object_id".into()),
             targets: (formats.iter())

@@ -4,30 +4,28 @@ use bevy::{
     app::{App, SubApp},
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::schedule::IntoScheduleConfigs,
-    pbr::MeshPipeline,
     render::{
-        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags, RenderStartup,
-        RenderSystems,
-        render_phase::{
-            AddRenderCommand, DrawFunctions, SortedRenderPhasePlugin, sort_phase_system,
-        },
+        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        render_phase::{AddRenderCommand, DrawFunctions},
         render_resource::SpecializedMeshPipelines,
     },
 };
 
 use super::{
+    changes::{self, NoteChanges},
     depth_test::{self, count_ids},
     depths,
     draw::draw_object_ids,
     groups::{ObjectGroups, extract_object_groups},
     ids::{prepare_object_ids, queue_object_ids},
+    instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
     layer::prepare_layers,
     lightmaps::{Lightmapped, extract_lightmapped},
     line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
     marks::{Marks, extract_marks},
-    object_table::{ObjectTable, prepare_object_table},
-    phase::ObjectIdItem,
+    object_ids::{ObjectIds, begin_frame},
+    phase::{ObjectIdItem, ObjectIdPhases},
     pipeline::{MarkSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
     table::extract_object_styles,
@@ -37,9 +35,6 @@ use crate::schedule::{ComicsSystems, PrepareComics};
 
 /// Adds the pass that draws ids. Needs the engine's `PbrPlugin`.
 pub(crate) fn build(app: &mut App) {
-    app.add_plugins(SortedRenderPhasePlugin::<ObjectIdItem, MeshPipeline>::new(
-        RenderDebugFlags::default(),
-    ));
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
@@ -49,7 +44,8 @@ pub(crate) fn build(app: &mut App) {
         .init_resource::<Marks>()
         .init_gpu_resource::<SectionBuffer>()
         .init_resource::<SectionTables>()
-        .init_gpu_resource::<ObjectTable>()
+        .init_gpu_resource::<ObjectIdPhases>()
+        .init_gpu_resource::<ObjectIds>()
         .init_resource::<ObjectGroups>()
         .init_resource::<WideMeshes>()
         .init_resource::<Lightmapped>()
@@ -58,6 +54,7 @@ pub(crate) fn build(app: &mut App) {
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>();
     add_systems(render_app);
+    changes::build(render_app);
     depth_test::build_render(render_app);
     depths::build(render_app);
 }
@@ -71,31 +68,33 @@ fn add_systems(render_app: &mut SubApp) {
         .add_systems(
             ExtractSchedule,
             (
+                begin_frame,
                 extract_object_styles,
                 extract_object_groups,
                 extract_sections,
                 extract_marks,
                 extract_wide_meshes,
                 extract_lightmapped,
-            ),
+            )
+                .in_set(NoteChanges),
         )
         .add_systems(
             Render,
             (
                 prepare_sections.in_set(RenderSystems::PrepareAssets),
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
-                sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
-                prepare_object_table.in_set(RenderSystems::PrepareBindGroups),
+                place_instances.in_set(RenderSystems::PrepareResourcesBatchPhases),
+                bind_instances.in_set(RenderSystems::PrepareBindGroups),
                 (prepare_object_ids, prepare_layers, update_mark_styles)
                     .in_set(PrepareComics::Services),
                 prepare_line_widths
                     .in_set(PrepareComics::Services)
-                    .after(prepare_object_table),
+                    .after(bind_instances),
             ),
         )
         .add_systems(
             Core3d,
-            (draw_object_ids, count_ids)
+            (expand_instances, draw_object_ids, count_ids)
                 .chain()
                 .after(Core3dSystems::Prepass)
                 // With occlusion culling, it writes what indirect draws read.

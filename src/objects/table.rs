@@ -148,8 +148,11 @@ impl ObjectStyles {
 pub(crate) fn extract_object_styles(
     main: bevy::render::Extract<bevy::ecs::system::Res<ObjectStyles>>,
     mut styles: bevy::ecs::system::ResMut<ObjectStyles>,
+    mut changed: bevy::ecs::system::ResMut<super::changes::ChangedObjects>,
 ) {
-    if *styles != **main {
+    use bevy::ecs::change_detection::DetectChanges;
+    if main.is_changed() {
+        changed.note(&styles.slots, &main.slots);
         styles.clone_from(&main);
     }
 }

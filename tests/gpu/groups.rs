@@ -7,7 +7,6 @@ use serde_json::json;
 
 use crate::{
     ids::{cube, edge, material, put_two_cubes, seam, total, two_cubes},
-    line_scenes::id_of,
     outlines::ink,
     prelude::*,
 };
@@ -62,7 +61,11 @@ fn a_group_has_no_object_edge_inside_and_one_against_others() {
         let grouped = lines(&mut small);
         assert!(edge(&grouped, 100..106) > 0.9, "against an object outside");
         let found = [50, 70, 110].map(|x| id_at(&small, x));
-        assert_eq!(found, [root, root, other].map(id_of), "{msaa:?}");
+        assert_eq!(
+            found,
+            [root, root, other].map(|object| small.id_of(object)),
+            "{msaa:?}"
+        );
 
         // Two groups are two objects.
         group(&mut small, &[other]);
@@ -86,7 +89,7 @@ fn a_group_follows_changes_of_the_hierarchy() {
 
     let second = group(&mut small, &[right]);
     assert_two(&mut small, "in two groups");
-    assert_eq!(id_at(&small, 70), id_of(second));
+    assert_eq!(id_at(&small, 70), small.id_of(second));
 
     // Two levels down, below an entity that is no mesh.
     let parts = (ChildOf(root), Transform::default(), Visibility::default());
@@ -95,14 +98,14 @@ fn a_group_follows_changes_of_the_hierarchy() {
     assert_one(&mut small, "below a descendant");
     small.on(right).insert(OutlineGroup);
     assert_two(&mut small, "the nearest group counts");
-    assert_eq!(id_at(&small, 70), id_of(right));
+    assert_eq!(id_at(&small, 70), small.id_of(right));
     small.on(right).remove::<OutlineGroup>();
     assert_one(&mut small, "and back");
 
     // The whole branch leaves the group.
     small.on(between).remove::<ChildOf>();
     assert_two(&mut small, "outside");
-    assert_eq!(id_at(&small, 70), id_of(right));
+    assert_eq!(id_at(&small, 70), small.id_of(right));
     small.on(between).insert(ChildOf(root));
     assert_one(&mut small, "inside");
 
@@ -110,7 +113,7 @@ fn a_group_follows_changes_of_the_hierarchy() {
     small.on(root).detach_all_children();
     small.world().despawn(root);
     assert_two(&mut small, "without a root");
-    assert_eq!(id_at(&small, 50), id_of(left));
+    assert_eq!(id_at(&small, 50), small.id_of(left));
 
     // The root goes with everything below it.
     let last = group(&mut small, &[left, right]);
@@ -221,7 +224,7 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
     assert!(is_apart(&mut small), "another node is another object");
     let id = id_at(&small, 50);
     assert_eq!(id, id_at(&small, 70));
-    let is_primitive = meshes.iter().any(|mesh| id_of(*mesh) == id);
+    let is_primitive = meshes.iter().any(|mesh| small.id_of(*mesh) == id);
     assert!(is_primitive, "the id of a primitive");
 
     // A primitive with a group of its own is an object of its own, whichever it is.
@@ -272,11 +275,14 @@ fn copies_of_a_primitive_below_one_parent_are_several_objects() {
     assert_one(&mut small, "the copies");
     let world = small.world();
     let children = world.get::<Children>(parent).expect("four").to_vec();
-    assert_eq!(id_at(&small, 50), id_of(children[2]));
+    assert_eq!(id_at(&small, 50), small.id_of(children[2]));
     // Without one copy, its original is seen next to the other copy.
     small.world().despawn(children[3]);
     assert_two(&mut small, "an original and a copy");
     let found = [50, 70].map(|x| id_at(&small, x));
-    assert_eq!(found, [children[0], children[2]].map(id_of));
+    assert_eq!(
+        found,
+        [children[0], children[2]].map(|object| small.id_of(object))
+    );
     assert_eq!(small.errors(), 0);
 }

@@ -2,11 +2,7 @@
 
 use bevy_comics::objects::OutlineKinds;
 
-use crate::{
-    line_scenes::{id_of, skinned},
-    outlines::ink,
-    prelude::*,
-};
+use crate::{line_scenes::skinned, outlines::ink, prelude::*};
 
 pub fn material(
     small: &mut Small,
@@ -81,7 +77,7 @@ fn touching_objects_of_like_depth_and_normal_have_an_edge() {
         let ids = small.ids();
         let found = [ids[30 * 120 + 50], ids[30 * 120 + 70], ids[0]];
         let sky = 0;
-        assert_eq!(found, [id_of(left), id_of(right), sky]);
+        assert_eq!(found, [small.id_of(left), small.id_of(right), sky]);
         let no_objects = Outlines {
             objects: None,
             ..default()
@@ -215,7 +211,7 @@ fn alpha_masked_and_lit_meshes_have_ids_where_they_are_seen() {
     assert_eq!(ink(&mut small, Outlines::default()), opaque);
     let lit = material(&mut small, |m| m.unlit = false);
     small.on(right).insert(MeshMaterial3d(lit));
-    assert_eq!(small.settle().ids()[30 * 120 + 70], id_of(right));
+    assert_eq!(small.settle().ids()[30 * 120 + 70], small.id_of(right));
     assert_eq!(small.errors(), 0);
 }
 
@@ -255,7 +251,7 @@ fn skinned_and_morphed_meshes_have_ids_where_they_are_seen() {
     ink(&mut small, Outlines::default());
     let ids = small.ids();
     let [skinned, morphed] = meshes.map(|mesh| {
-        let own = (0..ids.len()).filter(|i| ids[*i] == id_of(mesh));
+        let own = (0..ids.len()).filter(|i| ids[*i] == small.id_of(mesh));
         let (count, sum) = own.fold((0.0, Vec2::ZERO), |(count, sum), i| {
             (
                 count + 1.0,

@@ -44,7 +44,7 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
         stage = stage.again(&light, Msaa::Off);
         let ids = stage.small.object_ids().expect("ids are drawn");
         let (_, picture) = stage.small.pass();
-        let id = u32::from(object_id(stage.ground));
+        let id = stage.small.id_of(stage.ground);
         // Ambient light alone.
         let ground = (picture.pixels.iter().zip(&ids.pixels)).filter(|(_, ids)| ids[0] == id);
         let dark = ground.map(|(pixel, _)| pixel[1]).fold(1.0, f32::min);
@@ -192,7 +192,7 @@ fn light_of_lamps_falls_off_to_its_range() {
             stage.small.headless.step(3);
             let ids = stage.small.object_ids().expect("ids are drawn");
             let (_, picture) = stage.small.pass();
-            let id = u32::from(object_id(stage.ground));
+            let id = stage.small.id_of(stage.ground);
             let wanted = |x: f32, y: f32| {
                 let point = |x: f32, y: f32| ground_point_at(&stage, Vec2::new(x, y) + 0.5);
                 let here = point(x, y)?;

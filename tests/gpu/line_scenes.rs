@@ -1,5 +1,6 @@
 //! Short forms for the scenes of which lines are measured.
 
+use bevy_comics_testkit::read_back;
 use image::RgbaImage;
 
 use crate::prelude::*;
@@ -54,10 +55,16 @@ impl Small {
         ids.into_iter().map(|[id, _]| id).collect()
     }
 
+    /// The id of an object that some view shows.
+    pub fn id_of(&self, object: Entity) -> u32 {
+        read_back::id_of(self.render_world(), object)
+    }
+
     /// The number of pixels that show an object.
     pub fn pixels_of(&self, object: Entity) -> usize {
         let ids = self.ids().into_iter();
-        ids.filter(|id| *id == id_of(object)).count()
+        let own = self.id_of(object);
+        ids.filter(|id| *id == own && own != 0).count()
     }
 
     pub fn outcome(&self, stage: ComicsStage) -> Option<StageOutcome> {
@@ -71,10 +78,6 @@ impl Small {
 pub fn runs(film: &[RgbaImage]) -> Vec<usize> {
     let runs = film.chunk_by(|a, b| a == b);
     runs.map(<[RgbaImage]>::len).collect()
-}
-
-pub fn id_of(object: Entity) -> u32 {
-    u32::from(object_id(object))
 }
 
 /// Silhouettes of one width, and no other lines.

@@ -47,6 +47,7 @@ mod lines;
 mod link_work;
 mod links;
 mod logical_pixels;
+mod many_objects;
 mod marks;
 mod means;
 mod memory;

@@ -140,6 +140,26 @@ fn children_share_the_outline_of_their_parent() {
 
 /// The outline lies over the effects of the camera, in sub-viewports too, and the effects are
 /// the same beside it.
+/// A mark has a layer of its own: id, style and sections of its object stay in the texture of ids.
+#[test]
+fn a_selected_object_keeps_its_id_and_its_style() {
+    let (mut small, square, _) = scene();
+    for mark in [true, false] {
+        small.insert(Outlines::default());
+        small
+            .on(square)
+            .insert((NoOutlines::default(), NoStyle::default()));
+        let before = small.settle().object_ids().expect("drawn");
+        if mark {
+            small.on(square).insert(green(1.0));
+        } else {
+            small.on(square).insert(x_ray());
+        }
+        assert_eq!(small.settle().object_ids().as_ref(), Some(&before));
+        small.on(square).remove::<(SelectionOutline, XRayOutline)>();
+    }
+}
+
 #[test]
 fn the_outline_lies_over_the_effects() {
     let (mut small, square, _) = scene();

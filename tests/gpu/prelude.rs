@@ -58,7 +58,6 @@ pub use bevy_comics::{
     lines::{Creases, LineBoil, LineColor, LineResponse, LineWeight, ObjectEdges, Silhouettes},
     objects::{DepthWrite, MeshSections, PatternAnchor},
     presets,
-    testing::object_id,
     toon::{
         DetailAxis, HighlightFrame, HighlightShape, ProxyShape, Ramp, RampBlend, RampDetail,
         RampMap, RampMode, RampStop, Rim, RimWidth, ShadingProxy, StylizedHighlight, ToonShading,

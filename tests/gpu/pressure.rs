@@ -8,7 +8,7 @@ use bevy_comics_testkit::reference::pressure::{
 
 use crate::{
     ids::{cube, material, skinned_and_morphed},
-    line_scenes::{deviation, id_of, mean, silhouettes, turned},
+    line_scenes::{deviation, mean, silhouettes, turned},
     prelude::*,
     sections::{none_has_sections, wait},
     walls::{towards_the_sky, wall},
@@ -186,6 +186,7 @@ fn drawn_factors_match_the_reference() {
         let half_height = f64::from(std::f32::consts::FRAC_PI_8).tan();
         let height = f64::from(size.y);
         let mut factors = Vec::new();
+        let board_id = small.id_of(board);
         for (i, id) in small.ids().into_iter().enumerate() {
             if id == 0 {
                 assert_eq!(found[i], 1.0, "the sky");
@@ -198,7 +199,7 @@ fn drawn_factors_match_the_reference() {
             let world = frame.place((ray * distance).to_array());
             let pixels = 0.5 * height / half_height / distance * frame.scale();
             let settings = [amount, wavelength].map(f64::from);
-            let want = pressure_factor(settings, world, pixels, id_of(board));
+            let want = pressure_factor(settings, world, pixels, board_id);
             // Half a code of rounding.
             let off = (127.0 * found[i] - stored_factor(want)).abs();
             assert!(off < 0.55, "{msaa:?} {pixel}: {}, {want}", found[i]);

@@ -174,7 +174,7 @@ pub fn blocked(from: Vec3, to: Vec3, low: Vec3, high: Vec3) -> bool {
 fn wrong_fraction(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
     let ids = stage.small.object_ids().expect("ids are drawn");
     let (_, picture) = stage.small.pass();
-    let id = u32::from(object_id(stage.ground));
+    let id = stage.small.id_of(stage.ground);
     let (mut wrong, mut looked, mut dark) = (0, 0, 0);
     for y in 0..SIZE.y {
         for x in 0..SIZE.x {
@@ -283,7 +283,7 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
         let (_, picture) = stage.small.pass();
         let (mut wrong, mut lit, mut dark) = (0, 0, 0);
         for (i, n) in normals.pixels.iter().enumerate() {
-            if ids.pixels[i][0] != u32::from(object_id(ball)) {
+            if ids.pixels[i][0] != stage.small.id_of(ball) {
                 continue;
             }
             let n = Vec3::new(n[0], n[1], n[2]);

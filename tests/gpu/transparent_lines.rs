@@ -3,7 +3,6 @@
 use bevy::{image::ToExtents, render::render_resource::AsBindGroup};
 
 use crate::{
-    line_scenes::id_of,
     outlines::{ink, removed},
     pictures::outlined,
     prelude::*,
@@ -261,7 +260,11 @@ fn the_line_follows_the_threshold() {
             let radius = at.length();
             let away = (radius - border).abs();
             // A code of the texture is 0.22 pixels of the ramp, a texel 0.5.
-            let want = if radius < border { id_of(glass) } else { 0 };
+            let want = if radius < border {
+                small.id_of(glass)
+            } else {
+                0
+            };
             assert!(away <= 0.5 || ids[i] == want, "{alpha_cutoff}: {at}");
             let sector = ((at.to_angle() / std::f32::consts::TAU + 0.5) * 16.0) as usize % 16;
             sums[sector] += ink;
@@ -301,7 +304,7 @@ fn every_alpha_counts_in_every_mode() {
         let ids = small.settle().ids();
         // 0.8 (0.25 + 0.75 x / 60) is 0.5 where x is 30, in the middle.
         for x in 0..SIDE {
-            let found = ids[(SIDE / 2 * SIDE + x) as usize] == id_of(glass);
+            let found = ids[(SIDE / 2 * SIDE + x) as usize] == small.id_of(glass);
             assert_eq!(found, (60..90).contains(&x), "{alpha_mode:?}: column {x}");
         }
     }
@@ -325,7 +328,7 @@ fn it_is_an_object_like_others() {
     let plain = lines(&mut small);
     assert!(plain > 400.0, "inherited");
     let middle = (SIDE / 2 * SIDE + SIDE / 2) as usize;
-    assert_eq!(small.ids()[middle], id_of(glass));
+    assert_eq!(small.ids()[middle], small.id_of(glass));
 
     small.on(glass).insert(OutlineStyle {
         width: Some(4.0),

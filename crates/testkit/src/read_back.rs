@@ -10,7 +10,7 @@ use bevy::{
         view::ViewTarget,
     },
 };
-use bevy_comics::testing::{ViewCracks, ViewLineWidths, ViewObjectIds};
+use bevy_comics::testing::{ObjectIds, ViewCracks, ViewLineWidths, ViewObjectIds};
 use half::f16;
 
 use crate::{
@@ -344,6 +344,12 @@ pub fn motion_vectors(render_world: &World, view: Entity) -> Option<FloatImage> 
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.motion_vectors.as_ref()?.texture.texture;
     Some(read_floats(render_world, texture, 0, "texel"))
+}
+
+/// The id of an object; 0 if it has none.
+pub fn id_of(render_world: &World, object: Entity) -> u32 {
+    let ids = render_world.get_resource::<ObjectIds>();
+    ids.and_then(|ids| ids.get(object)).map_or(0, u32::from)
 }
 
 /// The object at each pixel's first sample; `None` if no ids were drawn.

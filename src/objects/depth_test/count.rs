@@ -19,7 +19,6 @@ use bevy::{
     math::UVec4,
     render::{
         camera::ExtractedCamera,
-        render_phase::ViewSortedRenderPhases,
         render_resource::{
             BindGroupEntries, Buffer, BufferUsages, CachedComputePipelineId, PipelineCache,
             SpecializedComputePipelines, TextureView,
@@ -39,7 +38,7 @@ use crate::{
     gpu::{buffer, compute_pass},
     objects::{
         IdRequest, ViewObjectIds,
-        phase::{Layer, ObjectIdItem},
+        phase::{Layer, ObjectIdPhases},
     },
     readback::map_words,
 };
@@ -211,7 +210,7 @@ type Counted = (
 /// Counts the missing ids of a view, after they were drawn, in some of the frames.
 pub(in crate::objects) fn count_ids(
     view: ViewQuery<Counted>,
-    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    phases: Res<ObjectIdPhases>,
     test: Res<DepthTest>,
     (cache, queue): (Res<PipelineCache>, Res<RenderQueue>),
     mut ctx: RenderContext,
@@ -231,15 +230,14 @@ pub(in crate::objects) fn count_ids(
         return;
     }
     // Meshes whose pipelines compile have no ids yet. Without a mesh, the depth may be old.
-    let ready = phases.is_some_and(|phases| {
-        let phase = phases.get(&extracted.retained_view_entity);
-        phase.is_some_and(|phase| {
-            let drawn = ObjectIdItem::of(phase, Layer::Prepass);
-            let mut items = phase.items.values().take(drawn.end);
-            !drawn.is_empty() && items.all(|i| cache.get_render_pipeline(i.pipeline).is_some())
-        })
-    });
-    if !ready {
+    let phase = phases.0.get(&extracted.retained_view_entity);
+    let items = phase.into_iter().flat_map(|phase| &phase.items);
+    let mut bins = items
+        .map(|item| item.bin)
+        .filter(|bin| bin.layer == Layer::Prepass)
+        .peekable();
+    let is_ready = |pipeline| cache.get_render_pipeline(pipeline).is_some();
+    if bins.peek().is_none() || !bins.all(|bin| is_ready(bin.pipeline)) {
         return;
     }
     // What is beside the viewport is depth of other cameras.

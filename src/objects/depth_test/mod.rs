@@ -38,7 +38,7 @@ use self::{
     tolerant::prepare_tolerant_ids,
     watch::Watch,
 };
-use super::object_table::prepare_object_table;
+use super::instances::bind_instances;
 use crate::schedule::PrepareComics;
 
 pub(super) use count::count_ids;
@@ -171,10 +171,7 @@ pub(super) fn build_render(render_app: &mut SubApp) {
         .add_systems(
             Render,
             (
-                (
-                    prepare_tolerant_ids.after(prepare_object_table),
-                    prepare_counts,
-                )
+                (prepare_tolerant_ids.after(bind_instances), prepare_counts)
                     .in_set(PrepareComics::Services),
                 map_counts.in_set(RenderSystems::Cleanup),
             ),

@@ -33,7 +33,7 @@ use crate::{
 #[derive(Component)]
 pub(in crate::objects) struct TolerantIds {
     depth: CachedTexture,
-    /// What the pass binds instead of `ObjectTable::bind_group`; `None` if there is no object.
+    /// What the pass binds instead of `ObjectIdPhase::bind_group`; `None` if there is no object.
     pub bind_group: Option<BindGroup>,
 }
 
@@ -93,10 +93,11 @@ pub(super) fn prepare_tolerant_ids(
             CORE_3D_DEPTH_FORMAT,
             TextureUsages::RENDER_ATTACHMENT,
         );
-        let widths = drawing.draws_widths(view.retained_view_entity);
+        let view = view.retained_view_entity;
+        let widths = drawing.draws_widths(view);
         target.insert(TolerantIds {
             depth: textures.get(&device, descriptor),
-            bind_group: drawing.bind_group(request, widths, Some(&found.default_view)),
+            bind_group: drawing.bind_group((view, request), widths, Some(&found.default_view)),
         });
     }
 }

@@ -14,10 +14,12 @@ use bevy::{
         Extract,
         render_resource::{Buffer, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},
+        sync_world::MainEntity,
     },
 };
 
 use super::{
+    super::changes::ChangedObjects,
     EntitySections, Numbers, SectionKey,
     divide::{NUMBERS, SILENT},
 };
@@ -65,8 +67,12 @@ impl SectionTables {
 pub(crate) fn extract_sections(
     main: Extract<Res<SectionTables>>,
     mut tables: ResMut<SectionTables>,
+    mut changed: ResMut<ChangedObjects>,
 ) {
     if main.is_changed() {
+        // Any of them may begin at another word now.
+        let meshes = tables.entities.keys().chain(main.entities.keys());
+        changed.0.extend(meshes.copied().map(MainEntity::from));
         tables.clone_from(&main);
     }
 }

@@ -4,30 +4,19 @@ use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     core_pipeline::prepass::NORMAL_PREPASS_FORMAT,
     ecs::{
-        entity::Entity,
         resource::Resource,
         system::{Commands, Res, ResMut, SystemParam},
     },
     log::{error_once, warn_once},
-    material::{
-        MaterialProperties,
-        key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
-    },
+    material::{MaterialProperties, key::ErasedMaterialPipelineKey},
     mesh::MeshVertexBufferLayoutRef,
-    pbr::{
-        Material, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader,
-        PrepassPipelineSpecializer, RenderMaterialInstances, RenderMeshInstances, StandardMaterial,
-    },
+    pbr::{Material, MeshPipelineKey, PrepassFragmentShader, StandardMaterial},
     platform::sync::Arc,
     render::{
-        erased_render_asset::ErasedRenderAssets,
-        mesh::RenderMesh,
-        render_asset::RenderAssets,
-        render_phase::DrawFunctions,
         render_resource::{
-            BindGroupLayoutDescriptor, CompareFunction, FragmentState, PipelineCache,
-            RenderPipelineDescriptor, SpecializedMeshPipeline, SpecializedMeshPipelineError,
-            SpecializedMeshPipelines, TextureFormat,
+            CompareFunction, FragmentState, PipelineCache, RenderPipelineDescriptor,
+            SpecializedMeshPipeline, SpecializedMeshPipelineError, SpecializedMeshPipelines,
+            TextureFormat,
         },
         sync_world::MainEntity,
     },
@@ -36,10 +25,9 @@ use bevy::{
 
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
-    items::draw_function,
-    lightmaps::MeshLightmaps,
-    phase::{Layer, ObjectIdItem},
-    pipeline::{ObjectIdPipeline, in_prepass, reads_material},
+    items::{DrawnMeshes, Missing},
+    phase::{Bin, Layer},
+    pipeline::{IdParts, ObjectIdPipeline, in_prepass, reads_material},
     table::DepthWrites,
 };
 
@@ -73,9 +61,8 @@ pub(in crate::objects) struct TransparentKey {
 }
 
 pub(in crate::objects) struct TransparentSpecializer {
-    prepass: PrepassPipelineSpecializer,
-    /// The pipeline of object ids, for its layout.
-    layout: BindGroupLayoutDescriptor,
+    ids: Arc<IdParts>,
+    properties: Arc<MaterialProperties>,
     shader: Handle<Shader>,
 }
 
@@ -87,9 +74,10 @@ impl SpecializedMeshPipeline for TransparentSpecializer {
         key: Self::Key,
         layout: &MeshVertexBufferLayoutRef,
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.prepass.specialize(key.material, layout)?;
+        let prepass = self.ids.prepass_of(&self.properties);
+        let mut descriptor = prepass.specialize(key.material, layout)?;
         descriptor.label = Some("comics_transparent_depth".into());
-        descriptor.layout[1] = self.layout.clone();
+        descriptor.layout[1] = self.ids.layout.clone();
         // The material adds its own to those of the fragment shader.
         let defs = descriptor.fragment.take().map(|state| state.shader_defs);
         let mut shader_defs = defs.unwrap_or_else(|| descriptor.vertex.shader_defs.clone());
@@ -120,65 +108,52 @@ fn formats(targets: QueuedDepth) -> [Option<TextureFormat>; 2] {
     ]
 }
 
-/// Makes the phase items of transparent meshes.
+/// Finds the bins of transparent meshes.
 #[derive(SystemParam)]
 pub(in crate::objects) struct TransparentItems<'w> {
     writes: Res<'w, DepthWrites>,
-    draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
+    drawn: DrawnMeshes<'w>,
     shared: Res<'w, ObjectIdPipeline>,
     own: Res<'w, TransparentPipeline>,
     pipelines: ResMut<'w, SpecializedMeshPipelines<TransparentSpecializer>>,
     cache: Res<'w, PipelineCache>,
-    meshes: Res<'w, RenderAssets<RenderMesh>>,
-    instances: Res<'w, RenderMeshInstances>,
-    lightmaps: MeshLightmaps<'w>,
-    materials: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
-    material_instances: Res<'w, RenderMaterialInstances>,
 }
 
 impl TransparentItems<'_> {
-    /// The phase item of a mesh; `None` if it does not ask for it, or if the depth prepass
-    /// draws it.
-    pub fn item(
+    /// The bin of a mesh, and where the engine has uploaded it; it is not drawn if it does not ask
+    /// for it, or if the depth prepass draws it.
+    pub fn bin(
         &mut self,
-        object: (Entity, MainEntity),
+        entity: MainEntity,
         view_key: MeshPipelineKey,
         targets: QueuedDepth,
-    ) -> Option<ObjectIdItem> {
-        if !self.writes.cutoffs.contains_key(&object.1.id()) {
-            return None;
+    ) -> Result<(Bin, u32), Missing> {
+        if !self.writes.cutoffs.contains_key(&entity.id()) {
+            return Err(Missing::NotDrawn);
         }
-        let instance = self.instances.render_mesh_queue_data(object.1)?;
-        let mesh = self.meshes.get(instance.mesh_asset_id())?;
-        let asset = self.material_instances.instances.get(&object.1)?.asset_id;
-        let properties = &self.materials.get(asset)?.properties;
+        let drawn = self.drawn.get(entity)?;
+        let properties = drawn.properties;
         if in_prepass(properties) {
-            return None;
+            return Err(Missing::NotDrawn);
         }
-        let cutoff = self.own.has_cutoff(object.1, properties)?;
-        let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
-        mesh_key.set(MeshPipelineKey::NORMAL_PREPASS, targets.normals);
-        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, self.lightmaps.has(object.1));
+        let cutoff = self.own.has_cutoff(entity, properties);
+        let cutoff = cutoff.ok_or(Missing::NotDrawn)?;
         let uses_material = cutoff || reads_material(properties);
-        mesh_key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
+        let mut mesh_key = drawn.mesh_key(view_key, uses_material);
+        mesh_key.set(MeshPipelineKey::NORMAL_PREPASS, targets.normals);
         mesh_key.set(MeshPipelineKey::MAY_DISCARD, cutoff);
         let key = TransparentKey {
-            material: ErasedMaterialPipelineKey {
-                type_id: asset.type_id(),
-                mesh_key: ErasedMeshPipelineKey::new(mesh_key),
-                material_key: properties.material_key.clone(),
-            },
+            material: drawn.material_key(mesh_key),
             targets,
             cutoff,
         };
         let specializer = self.own.specializer(&self.shared, properties);
         let pipeline = (self.pipelines)
-            .specialize(&self.cache, &specializer, key, &mesh.layout)
-            .inspect_err(|error| error_once!("no depth of {:?}: {error}", object.1))
-            .ok()?;
-        let draw_function = draw_function(&self.draw_functions, uses_material);
-        let drawn = (mesh.indexed(), Layer::OwnDepth);
-        Some(ObjectIdItem::new(object, pipeline, draw_function, drawn))
+            .specialize(&self.cache, &specializer, key, &drawn.mesh.layout)
+            .inspect_err(|error| error_once!("no depth of {entity:?}: {error}"))
+            .map_err(|_| Missing::NotDrawn)?;
+        let layer = (Layer::OwnDepth, uses_material);
+        Ok(self.drawn.bin(entity, &drawn, pipeline, layer))
     }
 }
 
@@ -204,11 +179,8 @@ impl TransparentPipeline {
         properties: &Arc<MaterialProperties>,
     ) -> TransparentSpecializer {
         TransparentSpecializer {
-            prepass: PrepassPipelineSpecializer {
-                pipeline: ids.prepass.clone(),
-                properties: properties.clone(),
-            },
-            layout: ids.layout.clone(),
+            ids: ids.parts(),
+            properties: properties.clone(),
             shader: self.shader.clone(),
         }
     }

@@ -9,7 +9,7 @@ use bevy::{
     asset::embedded_asset,
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
-        change_detection::DetectChangesMut,
+        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::Children,
@@ -29,7 +29,13 @@ use self::{
     items::{TransparentSpecializer, init_transparent_pipeline},
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
-use super::{depth_test::count_ids, inherit::inherit, table::DepthWrites};
+use super::{
+    changes::{ChangedObjects, NoteChanges},
+    depth_test::count_ids,
+    inherit::inherit,
+    instances::expand_instances,
+    table::DepthWrites,
+};
 use crate::{
     depth::surfaces::prepass_is_empty,
     schedule::{ComicsSystems, PrepareComics},
@@ -39,7 +45,7 @@ use crate::{
 pub(super) use items::TransparentItems;
 
 /// Lets a transparent mesh take part in lines and effects: it writes its depth, its normal and
-/// its [`object_id`](crate::testing::object_id) for the effects of this crate.
+/// its [id](crate::testing::ObjectIds) for the effects of this crate.
 ///
 /// Then it has outlines of its own, hides the lines of what is behind it, and the colour
 /// effects use its own distance. The engine's depth and its picture do not change: what is
@@ -113,8 +119,13 @@ fn assign_depth_writes(
     writes.set_if_neq(DepthWrites { cutoffs });
 }
 
-fn extract_depth_writes(main: Extract<Res<DepthWrites>>, mut writes: ResMut<DepthWrites>) {
-    if *writes != **main {
+fn extract_depth_writes(
+    main: Extract<Res<DepthWrites>>,
+    mut writes: ResMut<DepthWrites>,
+    mut changed: ResMut<ChangedObjects>,
+) {
+    if main.is_changed() {
+        changed.note(&writes.cutoffs, &main.cutoffs);
         writes.clone_from(&main);
     }
 }
@@ -147,7 +158,7 @@ pub(super) fn finish(app: &mut App) {
                 init_normal_copy,
             ),
         )
-        .add_systems(ExtractSchedule, extract_depth_writes)
+        .add_systems(ExtractSchedule, extract_depth_writes.in_set(NoteChanges))
         .add_systems(
             Render,
             // With OpenGL, no transparent mesh is drawn, and the depth is not copied.
@@ -158,6 +169,7 @@ pub(super) fn finish(app: &mut App) {
             Core3d,
             draw_transparent_depth
                 .after(count_ids)
+                .after(expand_instances)
                 .after(Core3dSystems::Prepass)
                 .before(ComicsSystems::DepthRange)
                 .before(Core3dSystems::MainPass),

@@ -22,7 +22,6 @@ use bevy::{
     render::{
         camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
-        render_phase::{SortedRenderPhase, ViewSortedRenderPhases},
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
             FragmentState, LoadOp, MultisampleState, Operations, PipelineCache,
@@ -45,7 +44,7 @@ use crate::{
     gpu,
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
-        phase::{Layer, ObjectIdItem},
+        phase::{Layer, ObjectIdPhase, ObjectIdPhases},
         shading::has_sample_shading,
     },
 };
@@ -167,15 +166,13 @@ pub(in crate::objects) fn draw_transparent_depth(
         (&ViewDepthTexture, &ViewPrepassTextures),
         (&QueuedDepth, &OwnSurfaces, Option<&ViewObjectIds>),
     )>,
-    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    phases: Res<ObjectIdPhases>,
     (ledger, cache): (Res<StageLedger>, Res<PipelineCache>),
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
     let ((camera, extracted, resolution, wanted), textures, own) = view.into_inner();
-    let phase = phases
-        .as_ref()
-        .and_then(|phases| phases.get(&extracted.retained_view_entity));
+    let phase = phases.0.get(&extracted.retained_view_entity);
     let recorded = Targets::new((textures, own), &cache, &ctx).and_then(|targets| {
         let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
         let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
@@ -241,7 +238,7 @@ impl<'a> Targets<'a> {
     fn record<'w>(
         &self,
         ctx: &mut RenderContext,
-        (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
+        (world, view, phase): (&'w World, Entity, &ObjectIdPhase),
         viewport: Option<Viewport>,
     ) -> Result<(), SkipReason> {
         let diagnostics = ctx.diagnostic_recorder();
@@ -278,10 +275,9 @@ impl<'a> Targets<'a> {
     fn draw<'w>(
         &self,
         ctx: &mut RenderContext,
-        (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
+        (world, view, phase): (&'w World, Entity, &ObjectIdPhase),
         viewport: Option<Viewport>,
     ) -> Result<(), SkipReason> {
-        let range = ObjectIdItem::of(phase, Layer::OwnDepth);
         let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("comics_transparent_depth"),
             color_attachments: &[
@@ -304,7 +300,7 @@ impl<'a> Targets<'a> {
             pass.set_camera_viewport(&viewport);
         }
         phase
-            .render_range(&mut pass, world, view, range)
+            .render(&mut pass, (world, view), Layer::OwnDepth)
             .map_err(|error| {
                 error_once!("transparent meshes wrote no depth: {error:?}");
                 SkipReason::PipelineNotReady

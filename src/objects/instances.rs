@@ -1,0 +1,295 @@
+//! The instances of the draw calls of object ids, and what the pass reads of each.
+//!
+//! With the engine's indirect drawing, the order of its instances is known to the GPU alone, so a
+//! fragment could not tell which mesh it belongs to. The bins of this pass are therefore expanded
+//! by the engine's pipeline for direct drawing, which writes each mesh to the place that its work
+//! item names.
+
+use std::{any::TypeId, num::NonZero};
+
+use bevy::{
+    ecs::system::{Res, ResMut, StaticSystemParam, SystemParam, SystemParamItem},
+    pbr::{MeshInputUniform, MeshPipeline, MeshUniform, PreprocessPipelines, RenderMeshInstances},
+    render::{
+        batching::{
+            GetBatchData, GetFullBatchData,
+            gpu_preprocessing::{BatchedInstanceBuffers, PreprocessWorkItem},
+            no_gpu_preprocessing::BatchedInstanceBuffer,
+        },
+        render_resource::{
+            BindGroup, BindingResource, Buffer, BufferBinding, BufferId, BufferUsages,
+            PipelineCache, RawBufferVec,
+        },
+        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+        view::{ExtractedView, ViewUniformOffset, ViewUniforms},
+    },
+};
+
+use super::{
+    phase::{Instance, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
+    pipeline::ObjectIdPipeline,
+    sections::SectionBuffer,
+};
+use crate::gpu::{compute_pass, entry};
+
+/// The instances of a view on the GPU, in the order of its draw calls.
+pub(crate) struct InstanceBuffers {
+    /// What the engine expands; empty where the CPU does it.
+    work: RawBufferVec<PreprocessWorkItem>,
+    /// The records of the instances, after as many unused ones as there are instances of other
+    /// passes before them.
+    records: RawBufferVec<[u32; 4]>,
+    expansion: Option<Expansion>,
+    /// What the passes bind, and the buffers that are bound.
+    bound: Option<([BufferId; 2], BindGroup)>,
+}
+
+impl Default for InstanceBuffers {
+    fn default() -> Self {
+        Self {
+            work: RawBufferVec::new(BufferUsages::STORAGE),
+            records: RawBufferVec::new(BufferUsages::STORAGE),
+            expansion: None,
+            bound: None,
+        }
+    }
+}
+
+/// The engine's buffers of mesh instances, of which there is one kind or the other.
+#[derive(SystemParam)]
+pub(super) struct EngineBuffers<'w> {
+    gpu: Option<ResMut<'w, BatchedInstanceBuffers<MeshUniform, MeshInputUniform>>>,
+    cpu: Option<ResMut<'w, BatchedInstanceBuffer<MeshUniform>>>,
+    instances: Res<'w, RenderMeshInstances>,
+}
+
+/// Makes the draw calls of this frame, and uploads what they read.
+pub(super) fn place_instances(
+    mut phases: ResMut<ObjectIdPhases>,
+    mut engine: EngineBuffers,
+    param: StaticSystemParam<<MeshPipeline as GetBatchData>::Param>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+) {
+    let key = TypeId::of::<ObjectIdItem>();
+    if let RenderMeshInstances::CpuBuilding(_) = *engine.instances {
+        if let Some(buffer) = &mut engine.cpu {
+            for phase in phases.0.values_mut() {
+                phase.build_on_cpu(buffer, &param);
+                phase.upload(&device, &queue);
+            }
+        }
+        return;
+    }
+    let Some(buffers) = &mut engine.gpu else {
+        return;
+    };
+    let mut most = 0;
+    for phase in phases.0.values_mut() {
+        if std::mem::take(&mut phase.changed) {
+            phase.build();
+            phase.upload(&device, &queue);
+        }
+        most = most.max(phase.buffers.work.len());
+    }
+    // Views are expanded one after another, each right before it is drawn.
+    if most > 0 {
+        let phase = buffers.phase_instance_buffers.entry(key).or_default();
+        phase.data_buffer.add_multiple(most);
+    } else {
+        buffers.phase_instance_buffers.swap_remove(&key);
+    }
+}
+
+impl ObjectIdPhase {
+    /// Makes the draw calls, and what the GPU expands.
+    fn build(&mut self) {
+        let mut items = std::mem::take(&mut self.items);
+        let mut buffers = std::mem::take(&mut self.buffers);
+        items.clear();
+        buffers.work.clear();
+        buffers.records.clear();
+        for (bin, meshes) in self.bins() {
+            let first = buffers.work.len() as u32;
+            for Instance { input, record, .. } in meshes {
+                buffers.work.push(PreprocessWorkItem {
+                    input_index: *input,
+                    output_or_indirect_parameters_index: buffers.work.len() as u32,
+                });
+                buffers.records.push(*record);
+            }
+            let end = buffers.work.len() as u32;
+            items.extend((meshes.first()).map(|i| Self::draw_call(bin, i.mesh, first..end)));
+        }
+        (self.items, self.buffers) = (items, buffers);
+    }
+
+    /// Makes the draw calls, and adds the instances to those that the CPU expands.
+    fn build_on_cpu(
+        &mut self,
+        buffer: &mut BatchedInstanceBuffer<MeshUniform>,
+        param: &SystemParamItem<<MeshPipeline as GetBatchData>::Param>,
+    ) {
+        let mut items = std::mem::take(&mut self.items);
+        let mut buffers = std::mem::take(&mut self.buffers);
+        items.clear();
+        buffers.records.clear();
+        for (bin, meshes) in self.bins() {
+            let mut drawn = None;
+            for Instance { mesh, record, .. } in meshes {
+                let Some(uniform) = MeshPipeline::get_binned_batch_data(param, *mesh) else {
+                    continue;
+                };
+                let at = buffer.push(uniform).index;
+                while buffers.records.len() < at as usize {
+                    buffers.records.push([0; 4]);
+                }
+                buffers.records.push(*record);
+                drawn = Some((drawn.map_or((*mesh, at), |(first, _)| first), at + 1));
+            }
+            items.extend(drawn.map(|((mesh, first), end)| Self::draw_call(bin, mesh, first..end)));
+        }
+        self.changed = false;
+        (self.items, self.buffers) = (items, buffers);
+    }
+
+    /// The records of the instances, and the sections that they name; `None` without a mesh.
+    pub fn bound<'a>(&'a self, sections: &'a SectionBuffer) -> Option<[&'a Buffer; 2]> {
+        if self.items.is_empty() {
+            return None;
+        }
+        Some([self.buffers.records.buffer()?, sections.buffer()?])
+    }
+
+    /// Binds the buffers, unless they are bound.
+    fn bind(&mut self, sections: &SectionBuffer, bind: impl FnOnce([&Buffer; 2]) -> BindGroup) {
+        let known = self.buffers.bound.take();
+        self.buffers.bound = self.bound(sections).map(|buffers| {
+            let key = buffers.map(|buffer| buffer.id());
+            known
+                .filter(|known| known.0 == key)
+                .unwrap_or_else(|| (key, bind(buffers)))
+        });
+    }
+
+    /// What the passes bind; `None` without a mesh.
+    pub fn bind_group(&self) -> Option<&BindGroup> {
+        self.buffers.bound.as_ref().map(|(_, group)| group)
+    }
+
+    fn upload(&mut self, device: &RenderDevice, queue: &RenderQueue) {
+        self.buffers.work.write_buffer(device, queue);
+        self.buffers.records.write_buffer(device, queue);
+    }
+}
+
+/// What expands the instances of a view.
+#[derive(Clone)]
+struct Expansion {
+    /// The buffers that are bound, and the number of instances.
+    key: ([BufferId; 5], usize),
+    group: BindGroup,
+}
+
+/// The engine's side of the bindings.
+#[derive(SystemParam)]
+pub(super) struct Expanding<'w> {
+    buffers: Option<Res<'w, BatchedInstanceBuffers<MeshUniform, MeshInputUniform>>>,
+    pipelines: Option<Res<'w, PreprocessPipelines>>,
+    views: Res<'w, ViewUniforms>,
+}
+
+impl Expanding<'_> {
+    /// `None` if nothing is expanded on the GPU, or if the engine has no buffers.
+    fn expansion(
+        &self,
+        view: &InstanceBuffers,
+        (device, cache): (&RenderDevice, &PipelineCache),
+    ) -> Option<Expansion> {
+        let engine = self.buffers.as_ref()?;
+        let output = engine
+            .phase_instance_buffers
+            .get(&TypeId::of::<ObjectIdItem>())?;
+        let bound = [
+            self.views.uniforms.buffer()?,
+            engine.current_input_buffer.buffer().buffer()?,
+            engine.previous_input_buffer.buffer()?,
+            view.work.buffer()?,
+            output.data_buffer.buffer()?,
+        ];
+        let key = (bound.map(|buffer| buffer.id()), view.work.len());
+        if let Some(known) = view.expansion.as_ref().filter(|known| known.key == key) {
+            return Some(known.clone());
+        }
+        let [_, current, previous, work, output] = bound;
+        let size = view.work.len() * size_of::<PreprocessWorkItem>();
+        // The shader reads the length of the array, and a buffer may be longer.
+        let work = BindingResource::Buffer(BufferBinding {
+            buffer: work,
+            offset: 0,
+            size: Some(NonZero::new(size as u64)?),
+        });
+        let pipeline = &self.pipelines.as_ref()?.direct_preprocess;
+        let group = device.create_bind_group(
+            "comics_object_instances",
+            &cache.get_bind_group_layout(&pipeline.bind_group_layout),
+            &[
+                entry(0, self.views.uniforms.binding()?),
+                entry(3, current.as_entire_binding()),
+                entry(4, previous.as_entire_binding()),
+                entry(5, work),
+                entry(6, output.as_entire_binding()),
+            ],
+        );
+        Some(Expansion { key, group })
+    }
+}
+
+/// Binds the buffers of this frame.
+pub(super) fn bind_instances(
+    mut phases: ResMut<ObjectIdPhases>,
+    expanding: Expanding,
+    sections: Res<SectionBuffer>,
+    (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
+    device: Res<RenderDevice>,
+) {
+    let layout = cache.get_bind_group_layout(&shared.layout);
+    for phase in phases.0.values_mut() {
+        let buffers = &mut phase.buffers;
+        buffers.expansion = if buffers.work.is_empty() {
+            None
+        } else {
+            expanding.expansion(buffers, (&device, &cache))
+        };
+        phase.bind(&sections, |[objects, sections]| {
+            let entries = [
+                entry(0, objects.as_entire_binding()),
+                entry(1, sections.as_entire_binding()),
+            ];
+            device.create_bind_group("comics_objects", &layout, &entries)
+        });
+    }
+}
+
+/// Expands the instances of a view.
+pub(super) fn expand_instances(
+    view: ViewQuery<(&ExtractedView, &ViewUniformOffset)>,
+    phases: Res<ObjectIdPhases>,
+    pipelines: Option<Res<PreprocessPipelines>>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let (view, offset) = view.into_inner();
+    let Some(phase) = phases.0.get(&view.retained_view_entity) else {
+        return;
+    };
+    let pipeline = pipelines
+        .and_then(|pipelines| pipelines.direct_preprocess.pipeline_id)
+        .and_then(|id| cache.get_compute_pipeline(id));
+    let (Some(expansion), Some(pipeline)) = (&phase.buffers.expansion, pipeline) else {
+        return;
+    };
+    let bound = (pipeline, &expansion.group);
+    let encoder = ctx.command_encoder();
+    let mut pass = compute_pass(encoder, "comics_object_instances", bound, &[offset.offset]);
+    pass.dispatch_workgroups((phase.buffers.work.len() as u32).div_ceil(64), 1, 1);
+}

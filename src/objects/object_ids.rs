@@ -1,0 +1,211 @@
+//! The ids of objects.
+
+use std::collections::VecDeque;
+
+use bevy::{
+    ecs::{
+        entity::{Entity, EntityHashMap},
+        resource::Resource,
+        system::ResMut,
+    },
+    log::warn_once,
+};
+
+/// The ids of objects in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535. A resource of the
+/// render world.
+///
+/// | mesh | entity whose id it has |
+/// |---|---|
+/// | below an [`OutlineGroup`](crate::OutlineGroup), or with one | the entity with the nearest group |
+/// | one of several primitives of a glTF node, in no group | the first of these primitives, in the order of the node's children |
+/// | any other | the entity with the mesh |
+///
+/// Primitives of a glTF node are meshes of one parent whose asset paths end in
+/// `#MeshM/PrimitiveP` with the same file and the same `M`, as the engine's glTF loader
+/// spawns them. A second mesh with the same `P` begins a second object.
+///
+/// An object has an id while a view with ids sees one of its meshes, and keeps it afterwards until
+/// another object needs it: ids are given away again in the order in which they became free, at
+/// least [`REST`] frames later. While views see more than 65535 objects, the others share ids, and
+/// there are no [object edges](crate::lines::ObjectEdges) between those with the same one.
+#[derive(Resource, Debug, Default)]
+pub struct ObjectIds {
+    ids: EntityHashMap<u16>,
+    /// Of every id, from 1 on.
+    slots: Vec<Slot>,
+    /// Ids that no mesh has, and when they became free. Those that were given to their own object
+    /// again are still in it.
+    free: VecDeque<(u16, u32)>,
+    frame: u32,
+    /// Whether objects ever had to share ids.
+    any_shared: bool,
+}
+
+/// Frames for which an id without an object is not given to another one.
+const REST: u32 = 3;
+
+/// The object that has an id.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    object: Entity,
+    /// Meshes with the id, in all views.
+    meshes: u32,
+    /// When the last of them left.
+    freed: u32,
+    /// When the object got the id.
+    since: u32,
+    /// Whether other objects have it too, because there are not enough.
+    shared: bool,
+}
+
+impl ObjectIds {
+    /// The id of an object; `None` if it has none.
+    pub fn get(&self, object: Entity) -> Option<u16> {
+        self.ids.get(&object).copied()
+    }
+
+    /// The number of ids that were given so far.
+    pub fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether no id was given.
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
+    }
+
+    /// The id of an object alone, and whether it is new since the last frame; `None` if it has
+    /// none, or shares it.
+    pub(super) fn own(&self, object: Entity) -> Option<(u16, bool)> {
+        let id = self.get(object)?;
+        let slot = &self.slots[usize::from(id) - 1];
+        (!slot.shared && slot.meshes > 0).then_some((id, slot.since == self.frame))
+    }
+
+    /// The ids that several objects have.
+    pub(super) fn shared(&self) -> impl Iterator<Item = u16> {
+        let slots = self.slots.iter().zip(1..).filter(|_| self.any_shared);
+        slots.filter(|(slot, _)| slot.shared).map(|(_, id)| id)
+    }
+
+    /// Gives a mesh the id of its object.
+    pub(super) fn give(&mut self, object: Entity) -> u16 {
+        let id = self.get(object).unwrap_or_else(|| self.find(object));
+        self.slots[usize::from(id) - 1].meshes += 1;
+        id
+    }
+
+    /// Takes the id of a mesh back.
+    pub(super) fn take(&mut self, id: u16) {
+        let Some(slot) = usize::from(id)
+            .checked_sub(1)
+            .and_then(|at| self.slots.get_mut(at))
+        else {
+            return;
+        };
+        slot.meshes -= 1;
+        if slot.meshes == 0 {
+            slot.freed = self.frame;
+            self.free.push_back((id, self.frame));
+        }
+    }
+
+    /// An id for an object without one.
+    fn find(&mut self, object: Entity) -> u16 {
+        let slot = Slot {
+            object,
+            meshes: 0,
+            freed: 0,
+            since: self.frame,
+            shared: false,
+        };
+        while let Some((id, freed)) = self.free.front().copied() {
+            let old = &mut self.slots[usize::from(id) - 1];
+            if old.meshes > 0 || old.freed != freed {
+                // Its object has come back.
+                self.free.pop_front();
+            } else if self.frame.wrapping_sub(freed) < REST {
+                break;
+            } else {
+                self.free.pop_front();
+                if self.ids.get(&old.object) == Some(&id) {
+                    self.ids.remove(&old.object);
+                }
+                *old = slot;
+                self.ids.insert(object, id);
+                return id;
+            }
+        }
+        if self.slots.len() < usize::from(u16::MAX) {
+            self.slots.push(slot);
+            let id = self.slots.len() as u16;
+            self.ids.insert(object, id);
+            return id;
+        }
+        warn_once!("more than 65535 objects are seen at once: some have no lines between them");
+        let id = (object.index_u32() % u32::from(u16::MAX) + 1) as u16;
+        self.slots[usize::from(id) - 1].shared = true;
+        self.any_shared = true;
+        id
+    }
+}
+
+/// Begins a frame.
+pub(super) fn begin_frame(mut ids: ResMut<ObjectIds>) {
+    ids.frame = ids.frame.wrapping_add(1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn object(index: u32) -> Entity {
+        Entity::from_raw_u32(index).expect("an index")
+    }
+
+    #[test]
+    fn ids_are_dense_and_rest_before_they_are_given_away() {
+        let mut ids = ObjectIds::default();
+        // Ten objects at a time, each for two frames.
+        let mut given: VecDeque<(u16, u32)> = VecDeque::new();
+        for frame in 0..1000_u32 {
+            ids.frame += 1;
+            for i in 0..5 {
+                let new = object(frame * 5 + i);
+                let id = ids.give(new);
+                assert_eq!(ids.own(new), Some((id, true)));
+                let same = given
+                    .iter()
+                    .find(|(old, left)| *old == id && left + REST > frame);
+                assert_eq!(same, None, "frame {frame}");
+                if frame >= 2 {
+                    let old = ids.get(object((frame - 2) * 5 + i)).expect("seen");
+                    ids.take(old);
+                    given.push_back((old, frame));
+                }
+            }
+        }
+        assert!(ids.len() <= 5 * (2 + REST as usize) + 5, "{}", ids.len());
+        // One that comes back has its own.
+        let last = object(999 * 5);
+        let id = ids.get(last).expect("seen");
+        ids.take(id);
+        ids.frame += 10;
+        assert_eq!(ids.give(last), id);
+        assert_eq!(ids.own(last), Some((id, false)));
+    }
+
+    #[test]
+    fn beyond_the_last_id_objects_share() {
+        let mut ids = ObjectIds::default();
+        let all: Vec<u16> = (0..70_000).map(|index| ids.give(object(index))).collect();
+        assert!(all.iter().all(|id| *id > 0));
+        let own = (0..70_000).filter_map(|index| ids.own(object(index)));
+        let alone = own.count();
+        assert!(alone >= 65_535 - (70_000 - 65_535), "{alone}");
+        for id in all {
+            ids.take(id);
+        }
+        assert!(ids.slots.iter().all(|slot| slot.meshes == 0));
+    }
+}
