@@ -403,6 +403,20 @@ fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
     tinted.background.line_color = Color::srgb(0.0, 0.0, 1.0);
     tinted.background.line_color_amount = 0.5;
     let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
+    // The card in the middle is at 0.29: in the middle of a soft border, half in each layer.
+    let soft = DepthLayers {
+        borders: LayerBorders::Fixed,
+        foreground_end: 0.29,
+        softness: 0.2,
+        ..weighted
+    };
+    for (flip, want) in [(false, 4.0 * 0.75), (true, 4.0 * 0.75 * 0.625)] {
+        let [_, found, _] = line_widths(&lined(&mut small, soft, flip));
+        assert!(
+            (found - want).abs() < 0.06,
+            "{msaa:?}, {flip}: {found}, not {want}"
+        );
+    }
     for (&(granularity, borders), flip) in divisions.iter().flat_map(|d| [(d, false), (d, true)]) {
         let what = format!("{msaa:?}, {granularity:?}, {borders:?}, {flip}");
         let divided = |layers: DepthLayers| DepthLayers {
