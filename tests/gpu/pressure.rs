@@ -230,7 +230,11 @@ fn drawn_factors_match_the_reference() {
             let want = 2.0 * f64::from(alpha) * pressed;
             // Half a code of rounding.
             let off = (127.0 * found[i] - stored_factor(want)).abs();
-            assert!(off < 0.55, "{msaa:?} {pixel}: {}, {want}", found[i]);
+            assert!(
+                off < 0.55,
+                "{msaa:?}, {orthographic}, {pixel}: {}, {want}",
+                found[i]
+            );
             factors.push(want);
         }
         assert!(factors.len() > 1000 && deviation(&factors) > 0.1);
