@@ -24,10 +24,10 @@ fn plain(spread: f32, dry_brush: f32) -> Paper {
 }
 
 /// Every pixel, at widths of every kind of search, with strokes beyond loose ends; of lines that
-/// boil over the sheet or are sketched on it, which are narrow (wider ones are searched by columns, of which two cracks
+/// boil over the sheet, which are narrow (wider ones are searched by columns, of which two cracks
 /// are kept: where two are as near to the middle of a pixel, rounding decides which the line of a
-/// displaced place is); and of dots. In a viewport that does not begin at the corner of the target,
-/// the sheet stays with the target.
+/// displaced place is); of dots; and of a sketch on coarse paper. In a viewport that does not begin
+/// at the corner of the target, the sheet stays with the target.
 #[test]
 fn ink_on_paper_matches_the_reference() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);

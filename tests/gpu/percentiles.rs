@@ -1,5 +1,5 @@
-//! Percentiles of orthographic views: the bins against their reference, the percentiles
-//! against sorted depths. Views in perspective too: of a speck.
+//! Percentiles of orthographic views: the bins against their reference, the percentiles against
+//! sorted depths. Ranges of views of both kinds that a speck does not stretch.
 
 use bevy_comics_testkit::reference::{histogram::Bins, smoothing::Smoothing};
 

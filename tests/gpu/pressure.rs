@@ -168,7 +168,7 @@ fn drawn_factors_match_the_reference() {
     let size = UVec2::new(96, 64);
     let (amount, wavelength) = (0.75, 13.0);
     let mut small = Small::new(size, Msaa::Off);
-    for (msaa, orthographic, alpha) in [
+    for (msaa, is_orthographic, alpha) in [
         (Msaa::Off, false, 0.5f32),
         (Msaa::Sample4, false, 0.5),
         (Msaa::Off, true, 0.75),
@@ -176,7 +176,7 @@ fn drawn_factors_match_the_reference() {
         small.restart(msaa);
         small.clear();
         small.insert(Transform::IDENTITY);
-        if orthographic {
+        if is_orthographic {
             let scaling_mode = ScalingMode::FixedVertical {
                 viewport_height: 10.0,
             };
@@ -210,31 +210,27 @@ fn drawn_factors_match_the_reference() {
             }
             let pixel = UVec2::new(i as u32 % size.x, i as u32 / size.x);
             let at = (pixel.as_dvec2() + 0.5 - 0.5 * size.as_dvec2()) / (0.5 * height);
-            let (eye, ray, pixels_per_ray) = match orthographic {
-                true => (
-                    DVec3::new(5.0 * at.x, -5.0 * at.y, 0.0),
-                    DVec3::NEG_Z,
-                    height / 10.0,
-                ),
-                false => {
-                    let ray = DVec3::new(at.x * half_height, -at.y * half_height, -1.0);
-                    (DVec3::ZERO, ray, 0.5 * height / half_height)
-                }
+            let across = DVec3::new(at.x, -at.y, 0.0);
+            let (eye, ray) = if is_orthographic {
+                (5.0 * across, DVec3::NEG_Z)
+            } else {
+                (DVec3::ZERO, half_height * across + DVec3::NEG_Z)
             };
             let distance = (place - eye).dot(normal) / ray.dot(normal);
             let world = frame.place((eye + ray * distance).to_array());
-            let per_unit = pixels_per_ray / if orthographic { 1.0 } else { distance };
-            let pixels = per_unit * frame.scale();
+            let half_view = if is_orthographic {
+                5.0
+            } else {
+                half_height * distance
+            };
+            let pixels = 0.5 * height / half_view * frame.scale();
             let settings = [amount, wavelength].map(f64::from);
             let pressed = pressure_factor(settings, world, pixels, id_of(board));
             let want = 2.0 * f64::from(alpha) * pressed;
             // Half a code of rounding.
             let off = (127.0 * found[i] - stored_factor(want)).abs();
-            assert!(
-                off < 0.55,
-                "{msaa:?}, {orthographic}, {pixel}: {}, {want}",
-                found[i]
-            );
+            let view = format!("{msaa:?}, orthographic: {is_orthographic}");
+            assert!(off < 0.55, "{view}, {pixel}: {}, {want}", found[i]);
             factors.push(want);
         }
         assert!(factors.len() > 1000 && deviation(&factors) > 0.1);

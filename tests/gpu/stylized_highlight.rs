@@ -545,7 +545,8 @@ fn rims_are_as_wide_as_they_say() {
         (between / wanted - 1.0).abs() < 0.02,
         "{between}, not {wanted}"
     );
-    for pixels in [2.0f32, 5.0, 9.0] {
+    let mut around = 0.0;
+    for pixels in [2.0f32, 9.0, 5.0] {
         set_light(&mut small, &rimmed(RimWidth::Pixels(pixels), 0.0));
         let (area, middle) = covered(&drawn(&mut small));
         let wanted = all * (1.0 - (1.0 - f64::from(pixels) / RADIUS).powi(2));
@@ -555,6 +556,7 @@ fn rims_are_as_wide_as_they_say() {
             "{pixels}: {area}, not {wanted}"
         );
         assert!(middle.length() < 1.0);
+        around = area;
     }
     // On the side of a light from the right, and without the prepass as `Facing`.
     let old = only::<DirectionalLight>(&mut small);
@@ -564,7 +566,7 @@ fn rims_are_as_wide_as_they_say() {
         set_light(&mut small, &rimmed(RimWidth::Pixels(5.0), lit_side));
         covered(&drawn(&mut small))
     };
-    let [(around, _), (half, _), (lit, middle)] = [0.0, 0.5, 1.0].map(&mut covered_by);
+    let [(half, _), (lit, middle)] = [0.5, 1.0].map(&mut covered_by);
     assert!(middle.x > 0.4 * RADIUS, "{middle}");
     // Half on that side is the mean of all and none.
     let mean = 0.5 * (around + lit);

@@ -85,7 +85,7 @@ fn inked(n: &mut Numbers) -> Vec<[f32; 4]> {
     pixels().map(ink).collect()
 }
 
-/// A texture that is larger than the viewport: what is beyond is never read.
+/// A texture that is larger than the viewport. Shaders read nothing beyond the viewport.
 fn larger(texel: impl Fn(At) -> [f32; 4]) -> wgpu::TextureView {
     let size = SIZE.map(|k| k + 5);
     let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
@@ -305,7 +305,8 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
 }
 
 /// Views that stand still, drift, and move; with grids that are as fine as the picture, finer, and
-/// coarser, as an upscaler's; with jumps as in perspective and in an orthographic view; and without memory.
+/// coarser, as an upscaler's; with jumps as in perspective and in an orthographic view; and without
+/// memory.
 #[test]
 fn remembered_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
