@@ -188,9 +188,9 @@ fn inks(small: &mut Small, step: f32, exponent: f32, levels: Option<[f32; 2]>) -
 #[test]
 fn far_edges_must_be_stronger() {
     let mut small = before_white(Small::new(UVec2::new(96, 64), Msaa::Off));
-    // At the threshold of 0.02 the response is 1, and above, the square of the ratio: that of a step
-    // of 0.03 is 2.1, which is above the limit of 0.5 up to an abstraction of 0.46. That of 75 units
-    // is 0.74, or its fourth power.
+    // At the threshold of 0.02 the response is 1, and above, the square of the ratio. That of a
+    // step of 0.03 is 2.1, which is above the limit of 0.5 up to an abstraction of 0.46. The
+    // abstraction at 75 units is 0.74, or its fourth power.
     for (step, exponent, levels, kept) in [
         (0.03, 1.0, None, [true, false]),
         (0.3, 1.0, None, [true, true]),
