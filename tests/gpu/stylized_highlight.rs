@@ -387,7 +387,7 @@ fn the_brightest_light_draws_the_sign() {
 /// material has no cast shadows.
 #[test]
 fn cast_shadows_hide_signs() {
-    let mut small = ball(&signed(StylizedHighlight::default()));
+    let mut small = ball_of(&signed(StylizedHighlight::default()), [128, 64]);
     let shadows = DirectionalLight {
         shadow_maps_enabled: true,
         ..bright(1.0)
@@ -515,7 +515,7 @@ fn rims_are_as_wide_as_they_say() {
         share,
         softness: 0.0,
     };
-    let mut small = ball(&rimmed(facing, 0.0));
+    let mut small = ball_of(&rimmed(facing, 0.0), [128, 64]);
     small.insert(DepthPrepass);
     let all = std::f64::consts::PI * RADIUS * RADIUS;
     let (area, middle) = covered(&drawn(&mut small));
