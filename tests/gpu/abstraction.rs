@@ -88,6 +88,23 @@ fn far_things_are_paler_and_have_fewer_tones() {
             assert!(apart <= 1, "{msaa:?}, {flip}: {found:?} of {plain:?}");
             assert!(spread(found[1]) <= 1, "{msaa:?}, {flip}: {found:?}");
         }
+        // What is at half of the depth is by the exponent as abstract as at a quarter.
+        cards(&mut small, [51.0, 26.0], 0.0001);
+        let [half, quarter] = [2.0, 1.0].map(|exponent| {
+            let style = ComicStyle::new().with(Abstraction {
+                exponent,
+                ..abstraction
+            });
+            set_style(&mut small, style);
+            seen(&mut small)
+        });
+        let apart = (0..3).map(|i| half[0][i].abs_diff(quarter[1][i]));
+        assert!(apart.max() <= Some(1), "{half:?}, {quarter:?}");
+        assert!(
+            spread(half[0]) > spread(quarter[0]) + 9,
+            "{half:?}, {quarter:?}"
+        );
+        cards(&mut small, [1.001, 100.9], 0.0001);
         // Two bands far away, and sixteen near by: as with so many levels alone.
         let bands = |levels| ToneBands {
             levels,
@@ -147,8 +164,8 @@ fn sharp() -> Outlines {
 }
 
 /// The ink of a near card and a far one with a step of this fraction, without abstraction and with
-/// that of their places, or of levels of their own.
-fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
+/// that of their places, by this exponent, or of levels of their own.
+fn inks(small: &mut Small, step: f32, exponent: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
     let fronts = cards(small, [1.2, 75.0], step);
     let style = ComicStyle::new().with(sharp());
     set_style(small, style.clone());
@@ -159,6 +176,7 @@ fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 
     }
     let abstraction = Abstraction {
         line_threshold: 8.0,
+        exponent,
         ..default()
     };
     set_style(small, style.with(abstraction));
@@ -170,15 +188,18 @@ fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 
 #[test]
 fn far_edges_must_be_stronger() {
     let mut small = before_white(Small::new(UVec2::new(96, 64), Msaa::Off));
-    // At the threshold of 0.02 the response is 1, and above, the square of the ratio.
-    for (step, levels, kept) in [
-        (0.03, None, [true, false]),
-        (0.3, None, [true, true]),
-        (0.03, Some([1.0, 0.0]), [false, true]),
+    // At the threshold of 0.02 the response is 1, and above, the square of the ratio. That of a
+    // step of 0.03 is 2.1, which is above the limit of 0.5 up to an abstraction of 0.46. The
+    // abstraction at 75 units is 0.74, or its fourth power.
+    for (step, exponent, levels, kept) in [
+        (0.03, 1.0, None, [true, false]),
+        (0.3, 1.0, None, [true, true]),
+        (0.03, 4.0, None, [true, true]),
+        (0.03, 1.0, Some([1.0, 0.0]), [false, true]),
     ] {
-        let [without, with] = inks(&mut small, step, levels);
+        let [without, with] = inks(&mut small, step, exponent, levels);
         for card in 0..2 {
-            let what = format!("{step}, {levels:?}, {card}: {with:?} of {without:?}");
+            let what = format!("{step}, {exponent}, {levels:?}, {card}: {with:?} of {without:?}");
             assert!(without[card] > 15, "{what}");
             if kept[card] {
                 assert_eq!(with[card], without[card], "{what}");

@@ -403,6 +403,22 @@ fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
     tinted.background.line_color = Color::srgb(0.0, 0.0, 1.0);
     tinted.background.line_color_amount = 0.5;
     let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
+    // The card in the middle is at 0.29, at 0.7 of a soft border: smoothstep of it is in its layer.
+    let soft = DepthLayers {
+        borders: LayerBorders::Fixed,
+        foreground_end: 0.25,
+        softness: 0.2,
+        ..weighted
+    };
+    let (own, other) = (0.784, 0.216);
+    let [width, opacity] = [0.5 * own + other, own + 0.25 * other];
+    for (flip, want) in [(false, 4.0 * width), (true, 4.0 * width * opacity)] {
+        let [_, found, _] = line_widths(&lined(&mut small, soft, flip));
+        assert!(
+            (found - want).abs() < 0.06,
+            "{msaa:?}, {flip}: {found}, not {want}"
+        );
+    }
     for (&(granularity, borders), flip) in divisions.iter().flat_map(|d| [(d, false), (d, true)]) {
         let what = format!("{msaa:?}, {granularity:?}, {borders:?}, {flip}");
         let divided = |layers: DepthLayers| DepthLayers {

@@ -294,6 +294,11 @@ fn every_pixel_matches_the_reference() {
         small.restart(msaa);
         assert_pass_matches_the_reference(&mut small, &style, None, &format!("{msaa:?}"));
     }
+    // Light above 1 has the inks of 1.
+    small.insert(Hdr);
+    fill(&mut small, Color::linear_rgb(40.0, 9.0, 0.5));
+    let pixel = screened(Halftone::default());
+    assert_pass_matches_the_reference(&mut small, &pixel, None, "light above 1");
     assert_eq!(small.errors(), 0);
 }
 

@@ -26,8 +26,8 @@ fn plain(spread: f32, dry_brush: f32) -> Paper {
 /// Every pixel, at widths of every kind of search, with strokes beyond loose ends; of lines that
 /// boil over the sheet, which are narrow (wider ones are searched by columns, of which two cracks
 /// are kept: where two are as near to the middle of a pixel, rounding decides which the line of a
-/// displaced place is); and of dots. In a viewport that does not begin at the corner of the target,
-/// the sheet stays with the target.
+/// displaced place is); of dots; and of a sketch on coarse paper. In a viewport that does not begin
+/// at the corner of the target, the sheet stays with the target.
 #[test]
 fn ink_on_paper_matches_the_reference() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -63,6 +63,12 @@ fn ink_on_paper_matches_the_reference() {
     let mut styles = styles.to_vec();
     styles.push(outlined(boiling).with(plain(1.5, 0.4)));
     styles.push(ComicStyle::new().with(halftone).with(plain(1.5, 0.0)));
+    let coarse = Paper {
+        size: 2.0,
+        ink_bleed: 1.5,
+        ..default()
+    };
+    styles.push(ComicStyle::new().with(Sketch::default()).with(coarse));
     for (i, style) in styles.iter().enumerate() {
         assert_pass_matches_the_reference(&mut small, style, None, &format!("style {i}"));
     }

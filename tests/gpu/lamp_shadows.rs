@@ -151,8 +151,8 @@ fn change_lights(stage: &mut Stage, change: impl Fn(&mut f32, &mut bool)) {
 }
 
 /// Truth: light falls off with the square of the distance and ends at its range, smoothly or in
-/// rings; the cone of a spot light ends in the middle between its two angles. A ramp over the
-/// fraction of all light keeps the rings.
+/// rings, and has the colour of its lamp; the cone of a spot light ends in the middle between its
+/// two angles. A ramp over the fraction of all light keeps the rings.
 #[test]
 fn light_of_lamps_falls_off_to_its_range() {
     const INTENSITY: f32 = 120_000.0;
@@ -182,7 +182,19 @@ fn light_of_lamps_falls_off_to_its_range() {
             Kind::Spot(at, to) => (at, Some((to - at).normalize())),
             Kind::Lamp(at) | Kind::Sun(at) => (at, None),
         };
-        for (falloff, ramp) in [(0.0, None), (1.0, None), (1.0, Some(&white))] {
+        for (falloff, ramp, tint) in [
+            (0.0, None, [1.0; 3]),
+            (1.0, None, [0.25, 1.0, 0.5]),
+            (1.0, Some(&white), [1.0; 3]),
+        ] {
+            let color = Color::linear_rgb(tint[0], tint[1], tint[2]);
+            let world = stage.small.world();
+            for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
+                lamp.color = color;
+            }
+            for mut lamp in world.query::<&mut SpotLight>().iter_mut(world) {
+                lamp.color = color;
+            }
             let light = ToonLight {
                 falloff,
                 ramp: ramp.cloned(),
@@ -237,12 +249,15 @@ fn light_of_lamps_falls_off_to_its_range() {
                 };
                 let [low, high] =
                     [f64::min, f64::max].map(|of| around.iter().copied().reduce(of).expect("five"));
-                let found = f64::from(picture.pixels[i][1]);
-                // A code is up to 0.004 of linear light here.
-                assert!(
-                    (low - 0.005..high + 0.005).contains(&found),
-                    "{name}, {falloff}, {ramp:?}, ({x}, {y}): {found}, not {low} to {high}"
-                );
+                let even = exposure * 100.0;
+                for (found, tint) in picture.pixels[i].into_iter().zip(tint.map(f64::from)) {
+                    let [low, high] = [low, high].map(|light| even + tint * (light - even));
+                    // A code is up to 0.004 of linear light here.
+                    assert!(
+                        (low - 0.005..high + 0.005).contains(&f64::from(found)),
+                        "{name}, {falloff}, {ramp:?}, ({x}, {y}): {found}, not {low} to {high}"
+                    );
+                }
                 tones.insert(picture.pixels[i][1].to_bits());
             }
             let is_ringed = falloff > 0.0;

@@ -1,5 +1,5 @@
-//! Percentiles of orthographic views: the bins against their reference, the percentiles
-//! against sorted depths.
+//! Percentiles of orthographic views: the bins against their reference, the percentiles against
+//! sorted depths. Ranges of views of both kinds that a speck does not stretch.
 
 use bevy_comics_testkit::reference::{histogram::Bins, smoothing::Smoothing};
 
@@ -154,23 +154,28 @@ fn a_window_of_another_view_gives_a_range_within_the_extremes() {
     }
 }
 
-/// A wall across an orthographic view from 0 to 1e5 units, at a distance of 20 and 24
-/// units, and a speck of 0.4 % of the picture close to the camera.
-fn walls() -> Small {
+/// An orthographic view from 0 to 1e5 units, 10 units high.
+fn orthographic() -> Projection {
+    Projection::Orthographic(OrthographicProjection {
+        near: 0.0,
+        far: 1e5,
+        scaling_mode: ScalingMode::FixedVertical {
+            viewport_height: 10.0,
+        },
+        ..OrthographicProjection::default_3d()
+    })
+}
+
+/// A wall across a view at a distance of 20 and 24 units, and a speck close to the camera.
+/// `speck`: half of its size, which is 0.4 % of the picture.
+fn walls(projection: Projection, speck: f32) -> Small {
     let mut small = Small::new(UVec2::new(160, 100), Msaa::Off);
     small.clear();
     wall(&mut small, [-8.0, -10.0], [0.0, 10.0], 20.0);
     wall(&mut small, [0.0, -10.0], [8.0, 10.0], 24.0);
-    wall(&mut small, [-0.4; 2], [0.4; 2], 2.0);
+    wall(&mut small, [-speck; 2], [speck; 2], 2.0);
     small.insert((
-        Projection::Orthographic(OrthographicProjection {
-            near: 0.0,
-            far: 1e5,
-            scaling_mode: ScalingMode::FixedVertical {
-                viewport_height: 10.0,
-            },
-            ..OrthographicProjection::default_3d()
-        }),
+        projection,
         Transform::IDENTITY,
         DepthHistogram::default(),
         VisibleDepthRange::default(),
@@ -184,20 +189,32 @@ fn histogram(small: &Small) -> &DepthHistogram {
     histogram.expect("asked for")
 }
 
-/// Fails unless the drawn range is that of the walls, seen from so much farther away.
-fn assert_drawn_with_the_walls(small: &Small, away: f32) {
+/// Fails unless the drawn range is that of the walls, seen from so much farther away, within a bin.
+fn assert_drawn_with_the_walls(small: &Small, away: f32, bin: impl Fn(f32) -> f32) {
     let (near, far) = histogram(small).drawn.expect("a range");
-    // A step of raw depth is 0.006 units, a bin 0.8 % of the 22 units between the speck
-    // and the farther wall.
-    assert!(
-        (near - away - 20.0).abs() < 0.2 && (far - away - 24.0).abs() < 0.2,
-        "{near} to {far}, {away} away"
-    );
+    for (found, distance) in [(near, 20.0 + away), (far, 24.0 + away)] {
+        assert!(
+            (found - distance).abs() < bin(distance),
+            "{near} to {far}, {away} away"
+        );
+    }
 }
 
 #[test]
-fn a_speck_does_not_stretch_an_orthographic_range() {
-    let mut small = walls();
+fn a_speck_does_not_stretch_a_range() {
+    // A step of raw depth is 0.006 units, a bin 0.8 % of the 22 units between the speck
+    // and the farther wall.
+    assert_speck_is_left_out(walls(orthographic(), 0.4), 1000.0, |_| 0.2);
+    // As high as the other view 20 units away; a bin is an eighth of an octave of the depth.
+    let projection = PerspectiveProjection {
+        fov: 2.0 * 0.25f32.atan(),
+        ..default()
+    };
+    let small = walls(Projection::Perspective(projection), 0.04);
+    assert_speck_is_left_out(small, 20.0, |distance| distance / 8.0);
+}
+
+fn assert_speck_is_left_out(mut small: Small, away: f32, bin: impl Fn(f32) -> f32) {
     let map = |smoothing| DepthMap {
         smoothing: Some(RangeSmoothing {
             outliers: 0.02,
@@ -208,7 +225,7 @@ fn a_speck_does_not_stretch_an_orthographic_range() {
     let style = ComicStyle::default().with(Colorization::default());
     small.style(&with_map(style, map(RangeSmoothing::OFF)));
     small.settle();
-    assert_drawn_with_the_walls(&small, 0.0);
+    assert_drawn_with_the_walls(&small, 0.0, &bin);
 
     // With slow smoothing a new view starts with its percentiles, not with its extremes.
     let slow = RangeSmoothing {
@@ -216,17 +233,17 @@ fn a_speck_does_not_stretch_an_orthographic_range() {
         shrink: 60.0,
         ..RangeSmoothing::OFF
     };
-    small.insert((map(slow), Transform::from_xyz(0.0, 0.0, 1000.0)));
+    small.insert((map(slow), Transform::from_xyz(0.0, 0.0, away)));
     let entity = small.camera;
     small.world().trigger(CameraCut { entity });
     small.settle();
-    assert_drawn_with_the_walls(&small, 1000.0);
+    assert_drawn_with_the_walls(&small, away, &bin);
     assert_eq!(small.errors(), 0);
 }
 
 #[test]
 fn the_histogram_of_an_orthographic_view_tells_its_depths() {
-    let mut small = walls();
+    let mut small = walls(orthographic(), 0.4);
     small.settle();
     let range = small.range().and_then(VisibleDepthRange::distances);
     let (near, far) = range.expect("geometry");

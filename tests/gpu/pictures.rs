@@ -20,7 +20,7 @@ use bevy_comics_testkit::reference::{
 
 use half::f16;
 
-use crate::prelude::*;
+use crate::{halftone::fill, prelude::*};
 
 const ONE_CODE: f64 = 1.0 / 255.0;
 
@@ -631,11 +631,12 @@ fn a_camera_that_stores_display_codes_matches_the_reference() {
     check(&mut small, None, [("display codes".into(), style)]);
 }
 
-/// HDR storage, with colours above 1.
+/// HDR storage, with a sky above 1 that desaturation brings below.
 #[test]
 fn an_hdr_camera_matches_the_reference() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(Hdr);
+    fill(&mut small, Color::linear_rgb(1.5, 0.2, 0.1));
     let form = Equations::Faithful;
     let faithful = everything(
         form,

@@ -161,20 +161,37 @@ fn the_pattern_goes_with_its_object() {
 }
 
 /// The factors that are drawn are those of the reference, on a surface that is moved, turned and
-/// stretched, in perspective.
+/// stretched, in perspective and in an orthographic view that is 10 units high; there they are
+/// multiplied by those of its vertices.
 #[test]
 fn drawn_factors_match_the_reference() {
     let size = UVec2::new(96, 64);
     let (amount, wavelength) = (0.75, 13.0);
     let mut small = Small::new(size, Msaa::Off);
-    for msaa in [Msaa::Off, Msaa::Sample4] {
+    for (msaa, is_orthographic, alpha) in [
+        (Msaa::Off, false, 0.5f32),
+        (Msaa::Sample4, false, 0.5),
+        (Msaa::Off, true, 0.75),
+    ] {
         small.restart(msaa);
         small.clear();
         small.insert(Transform::IDENTITY);
+        if is_orthographic {
+            let scaling_mode = ScalingMode::FixedVertical {
+                viewport_height: 10.0,
+            };
+            small.insert(Projection::Orthographic(OrthographicProjection {
+                scaling_mode,
+                ..OrthographicProjection::default_3d()
+            }));
+        }
         let at = Transform::from_xyz(0.3, -0.2, -7.0)
             .with_rotation(Quat::from_euler(EulerRot::XYZ, 0.4, -0.7, 0.2))
             .with_scale(Vec3::new(9.0, 4.0, 1.0));
-        let board = small.put(Rectangle::new(1.0, 1.0), unlit(Color::WHITE), at);
+        let mesh = Mesh::from(Rectangle::new(1.0, 1.0))
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, vec![[1.0, 1.0, 1.0, alpha]; 4]);
+        let board = small.put(mesh, unlit(Color::WHITE), at);
+        small.on(board).insert(LineWidths::default());
         small.outlined(lines(pressed(amount, wavelength)));
         let found = small.line_widths().expect("drawn").factors;
         let (place, normal) = (at.translation.as_dvec3(), at.local_z().as_dvec3());
@@ -194,15 +211,27 @@ fn drawn_factors_match_the_reference() {
             }
             let pixel = UVec2::new(i as u32 % size.x, i as u32 / size.x);
             let at = (pixel.as_dvec2() + 0.5 - 0.5 * size.as_dvec2()) / (0.5 * height);
-            let ray = DVec3::new(at.x * half_height, -at.y * half_height, -1.0);
-            let distance = place.dot(normal) / ray.dot(normal);
-            let world = frame.place((ray * distance).to_array());
-            let pixels = 0.5 * height / half_height / distance * frame.scale();
+            let across = DVec3::new(at.x, -at.y, 0.0);
+            let (eye, ray) = if is_orthographic {
+                (5.0 * across, DVec3::NEG_Z)
+            } else {
+                (DVec3::ZERO, half_height * across + DVec3::NEG_Z)
+            };
+            let distance = (place - eye).dot(normal) / ray.dot(normal);
+            let world = frame.place((eye + ray * distance).to_array());
+            let half_view = if is_orthographic {
+                5.0
+            } else {
+                half_height * distance
+            };
+            let pixels = 0.5 * height / half_view * frame.scale();
             let settings = [amount, wavelength].map(f64::from);
-            let want = pressure_factor(settings, world, pixels, board_id);
+            let pressed = pressure_factor(settings, world, pixels, board_id);
+            let want = 2.0 * f64::from(alpha) * pressed;
             // Half a code of rounding.
             let off = (127.0 * found[i] - stored_factor(want)).abs();
-            assert!(off < 0.55, "{msaa:?} {pixel}: {}, {want}", found[i]);
+            let view = format!("{msaa:?}, orthographic: {is_orthographic}");
+            assert!(off < 0.55, "{view}, {pixel}: {}, {want}", found[i]);
             factors.push(want);
         }
         assert!(factors.len() > 1000 && deviation(&factors) > 0.1);

@@ -383,6 +383,41 @@ fn the_brightest_light_draws_the_sign() {
     assert!(off < 0.01 * wanted.length(), "{nearly}, not {wanted}");
 }
 
+/// Behind the camera, a board keeps the light away: signs and plain highlights vanish, unless the
+/// material has no cast shadows.
+#[test]
+fn cast_shadows_hide_signs() {
+    let mut small = ball_of(&signed(StylizedHighlight::default()), [128, 64]);
+    let shadows = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..bright(1.0)
+    };
+    let sun = only::<DirectionalLight>(&mut small);
+    small.world().entity_mut(sun).insert(shadows);
+    let board = Transform::from_xyz(0.0, 0.0, 7.0);
+    put(
+        &mut small,
+        Cuboid::new(4.0, 4.0, 0.2),
+        &ToonLight::default(),
+        board,
+    );
+    for stylized_highlight in [None, Some(StylizedHighlight::default())] {
+        let [shaded, lit] = [true, false].map(|cast_shadows| {
+            let light = ToonLight {
+                stylized_highlight,
+                cast_shadows,
+                ..signed(StylizedHighlight::default())
+            };
+            set_light(&mut small, &light);
+            covered(&drawn(&mut small)).0
+        });
+        assert!(
+            shaded == 0.0 && lit > 300.0,
+            "{shaded}, {lit}: {stylized_highlight:?}"
+        );
+    }
+}
+
 /// How much wider than high a sign is, as the logarithm of the ratio of the squares.
 fn wider_than_high(picture: &RgbaImage) -> f64 {
     let (area, middle) = covered(picture);
@@ -480,14 +515,38 @@ fn rims_are_as_wide_as_they_say() {
         share,
         softness: 0.0,
     };
-    let mut small = ball(&rimmed(facing, 0.0));
+    let mut small = ball_of(&rimmed(facing, 0.0), [128, 64]);
     small.insert(DepthPrepass);
     let all = std::f64::consts::PI * RADIUS * RADIUS;
     let (area, middle) = covered(&drawn(&mut small));
     let wanted = all * f64::from(share * share);
     assert!((area / wanted - 1.0).abs() < 0.02, "{area}, not {wanted}");
     assert!(middle.length() < 0.3);
-    for pixels in [2.0f32, 5.0, 9.0] {
+    // Half of the strength is half of the light.
+    let mut weak = rimmed(facing, 0.0);
+    weak.rim.as_mut().expect("a rim").strength = 0.5;
+    set_light(&mut small, &weak);
+    let half = covered(&drawn(&mut small)).0;
+    assert!((half / area - 0.5).abs() < 0.01, "{half} of {area}");
+    // A tenth of the step of `smoothstep` is at 0.196 of its width. The part of the ball between
+    // two cosines is the difference of their squares.
+    let softness = 0.4;
+    set_light(
+        &mut small,
+        &rimmed(RimWidth::Facing { share, softness }, 0.0),
+    );
+    let soft = covers(&drawn(&mut small));
+    let between = soft
+        .iter()
+        .filter(|cover| (0.1..0.9).contains(*cover))
+        .count() as f64;
+    let wanted = all * f64::from(2.0 * share * softness) * (1.0 - 2.0 * 0.196);
+    assert!(
+        (between / wanted - 1.0).abs() < 0.02,
+        "{between}, not {wanted}"
+    );
+    let mut around = 0.0;
+    for pixels in [2.0f32, 9.0, 5.0] {
         set_light(&mut small, &rimmed(RimWidth::Pixels(pixels), 0.0));
         let (area, middle) = covered(&drawn(&mut small));
         let wanted = all * (1.0 - (1.0 - f64::from(pixels) / RADIUS).powi(2));
@@ -497,14 +556,24 @@ fn rims_are_as_wide_as_they_say() {
             "{pixels}: {area}, not {wanted}"
         );
         assert!(middle.length() < 1.0);
+        around = area;
     }
     // On the side of a light from the right, and without the prepass as `Facing`.
     let old = only::<DirectionalLight>(&mut small);
     small.world().despawn(old);
     sun(&mut small, Vec3::X, bright(1.0));
-    set_light(&mut small, &rimmed(RimWidth::Pixels(5.0), 1.0));
-    let (_, middle) = covered(&drawn(&mut small));
+    let mut covered_by = |lit_side| {
+        set_light(&mut small, &rimmed(RimWidth::Pixels(5.0), lit_side));
+        covered(&drawn(&mut small))
+    };
+    let [(half, _), (lit, middle)] = [0.5, 1.0].map(&mut covered_by);
     assert!(middle.x > 0.4 * RADIUS, "{middle}");
+    // Half on that side is the mean of all and none.
+    let mean = 0.5 * (around + lit);
+    assert!(
+        lit < 0.8 * around && (half / mean - 1.0).abs() < 0.01,
+        "{half}, not {mean}"
+    );
 }
 
 /// Truth: the inner border of a rim of constant width is a straight line along a pillar that leans,

@@ -163,6 +163,50 @@ fn an_environment_is_smooth_or_two_tones_with_its_mean() {
     assert!(lit * 3 > ball && dark * 10 > ball, "{lit} {dark} of {ball}");
     // Besides the border, every pixel has one of the two tones.
     assert!((lit + dark) * 100 > ball * 90, "{lit} {dark} of {ball}");
+    // Between the two, every pixel is. A code is up to 0.009 of linear light.
+    let half = ToonLight {
+        flat_environment: 0.5,
+        ..default()
+    };
+    small.world().entity_mut(white).insert(ToonScene::new(half));
+    small.headless.step(6);
+    let between = small.picture();
+    for (x, y, _) in between.enumerate_pixels() {
+        let [smooth, flat, found] = [&smooth, &flat, &between].map(|of| linear(of, x, y));
+        let off = (0..3).map(|c| (0.5 * (smooth[c] + flat[c]) - found[c]).abs());
+        assert!(
+            off.fold(0.0, f64::max) < 0.01,
+            "({x}, {y}): {smooth:?} {flat:?} {found:?}"
+        );
+    }
+    // The bright side is that of the environment: the middle of what is lit is on the screen where
+    // the axis points.
+    small.world().entity_mut(white).insert(ToonScene::default());
+    let eye = small
+        .camera_mut()
+        .get::<Transform>()
+        .copied()
+        .expect("an eye");
+    for (bright, axis) in [(0, Vec3::X), (1, -Vec3::X), (3, -Vec3::Y), (5, Vec3::Z)] {
+        let mut colors = [Vec3::splat(0.3); 6];
+        colors[bright] = Vec3::ONE;
+        let sky = environment(&mut small, colors);
+        small.insert(sky);
+        small.headless.step(6);
+        let picture = small.picture();
+        let ball = picture
+            .enumerate_pixels()
+            .filter(|(_, _, pixel)| *pixel != background);
+        let mut sums = [Vec3::ZERO; 2];
+        for (x, y, _) in ball {
+            let is_lit = linear(&picture, x, y)[0] > 0.5;
+            sums[usize::from(is_lit)] += Vec3::new(x as f32, -(y as f32), 1.0);
+        }
+        let [shade, lit] = sums.map(|sum| sum / sum.z);
+        let points = (eye.rotation.inverse() * axis).truncate().normalize();
+        let turned = (lit - shade).truncate().normalize().dot(points);
+        assert!(turned > 0.95, "{axis}: {shade}, {lit}, not along {points}");
+    }
 }
 
 #[test]
@@ -405,8 +449,8 @@ fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Right below the middle of a rectangle, its light is what the integral says; the light
-/// ends at the plane of the rectangle.
+/// Below a rectangle, its light is what the integral says, in its middle and beside it, and fades
+/// out towards its range as that of a lamp; the light ends at the plane of the rectangle.
 #[test]
 fn a_rect_light_lights_what_it_shines_at() {
     let mut small = dark();
@@ -448,6 +492,30 @@ fn a_rect_light_lights_what_it_shines_at() {
         (f64::from(found) - wanted).abs() < 0.01,
         "{found}, not {wanted}"
     );
+    for ([x, z], range) in [
+        ([1.3f32, 0.6], 1000.0),
+        ([0.0, 0.0], 2.0),
+        ([1.3, 0.6], 2.5),
+    ] {
+        let place = at
+            .with_translation(Vec3::new(x, up, z))
+            .looking_to(-Vec3::Y, Vec3::Z);
+        small
+            .world()
+            .entity_mut(lamp)
+            .insert((place, RectLight { range, ..light }));
+        small.headless.step(6);
+        let [x, z] = [x, z].map(|v| 0.02 - f64::from(v));
+        let beside = rect_light(right, up_there, [x, z, up.into()], 200);
+        let part = DVec3::from_array(beside).length() / DVec3::from_array(vector).length();
+        let far = (x * x + z * z + f64::from(up * up)) / f64::from(range * range);
+        let wanted = wanted * part * (1.0 - far * far).powi(2);
+        let found = f64::from(middle(&small.picture()).x);
+        assert!(
+            (found - wanted).abs() < 0.01,
+            "{x}, {z}, {range}: {found}, not {wanted}"
+        );
+    }
     // Turned around, it shines away from the ground.
     small
         .world()

@@ -60,6 +60,34 @@ fn every_pixel_matches_the_reference() {
     }
 }
 
+/// Truth: where the lightness rises by as much in every pixel, as many pixels as `softness` says
+/// are between the tones, up to one at each end that is within a thousandth of a tone.
+#[test]
+fn edges_are_as_wide_as_they_say() {
+    let mut small = towards_the_sky(UVec2::new(96, 8));
+    small.insert(Hdr);
+    for x in 0..96u8 {
+        let light = (f32::from(x) / 96.0).powi(2);
+        let at = Transform::from_xyz(f32::from(x) - 47.5, 0.0, -100.0);
+        let color = Color::linear_rgb(light, light, light);
+        small.put(Rectangle::new(1.0, 8.0), unlit(color), at);
+    }
+    for softness in [0.0, 4.0, 9.0, 16.0] {
+        small.insert(TwoTone {
+            softness,
+            ..default()
+        });
+        let (_, shown) = small.settle().pass();
+        let row = shown.pixels[..96].iter().map(|pixel| pixel[1]);
+        let between = row.filter(|tone| (0.001..0.999).contains(tone)).count();
+        let most = softness as usize;
+        assert!(
+            (most.saturating_sub(1)..=most).contains(&between),
+            "{softness}: {between}"
+        );
+    }
+}
+
 /// Truth: a white wall before a darker one, with an outline between them: the two tones and
 /// nothing else, away from the border; the border is a straight, smooth edge, and the
 /// picture is the same turned inside out.

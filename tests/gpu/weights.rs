@@ -210,6 +210,11 @@ fn lines_follow_perspective() {
     // The middle between 12 and 30 is 21.
     assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.02, "{near}");
     assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.02, "{far}");
+    // Nothing is larger for being near in an orthographic view.
+    let mut small = towards_the_sky(SIZE);
+    wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
+    assert_width(&mut small, outlines, 4.0);
 }
 
 /// Lines fade as the engine's fog covers a black surface at the same place, at the middle of

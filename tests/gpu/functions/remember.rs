@@ -43,8 +43,8 @@ const MOVING: Motions = [
 
 /// A view in two frames.
 struct Scene {
-    /// Pixels of the grid per pixel of the viewport.
-    scale: i64,
+    /// Pixels of the grid per pixel of the viewport, along both axes.
+    scale: [f64; 2],
     /// Pixels of the grid between the depths that are compared.
     spacing: i64,
     share: f32,
@@ -85,8 +85,18 @@ fn inked(n: &mut Numbers) -> Vec<[f32; 4]> {
     pixels().map(ink).collect()
 }
 
+/// A texture that is larger than the viewport. Shaders read nothing beyond the viewport.
+fn larger(texel: impl Fn(At) -> [f32; 4]) -> wgpu::TextureView {
+    let size = SIZE.map(|k| k + 5);
+    let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+    let is_seen = |at: At| inside(SIZE, at) == at;
+    let texels = places.map(|at| if is_seen(at) { texel(at) } else { [1.0; 4] });
+    gpu().texture(size.map(|k| k as u32), &texels.collect::<Vec<_>>())
+}
+
 impl Scene {
-    fn new(n: &mut Numbers, [scale, spacing]: [i64; 2], share: f32, motions: Motions) -> Self {
+    fn new(n: &mut Numbers, grid: ([f64; 2], i64), share: f32, motions: Motions) -> Self {
+        let (scale, spacing) = grid;
         let all = [0, 1, 2, 3, 4, 5];
         let ink = inked(n);
         let mut past_ink = inked(n);
@@ -126,8 +136,14 @@ impl Scene {
 
     /// The surface at a pixel of the grid in this frame.
     fn surface(&self, at: At) -> usize {
-        let [x, y] = inside(SIZE.map(|k| k * self.scale), at).map(|k| k / self.scale / SURFACE);
+        let at = inside(self.grid(), at);
+        let [x, y] = [0, 1].map(|k| (at[k] as f64 / self.scale[k]) as i64 / SURFACE);
         self.surfaces[(10 * y + x) as usize][0]
+    }
+
+    /// Pixels of the grid.
+    fn grid(&self) -> At {
+        [0, 1].map(|k| (SIZE[k] as f64 * self.scale[k]) as i64)
     }
 
     /// Raw depth at a pixel of the last frame.
@@ -138,7 +154,7 @@ impl Scene {
 
     /// What the shader makes of all pixels: ink and slot; then depth and counts.
     fn found(&self) -> Vec<[[f32; 4]; 2]> {
-        let whole = [0, 1].map(|k| SIZE[k] * self.scale + ORIGIN[k] + 1);
+        let whole = [0, 1].map(|k| self.grid()[k] + ORIGIN[k] + 1);
         let surfaces: Vec<usize> = (0..whole[1])
             .flat_map(|y| (0..whole[0]).map(move |x| [x - ORIGIN[0], y - ORIGIN[1]]))
             .map(|at| self.surface(at))
@@ -148,16 +164,16 @@ impl Scene {
             let [x, y] = self.motions[*s];
             [x / SIZE[0] as f32, y / SIZE[1] as f32, 9.0, 9.0]
         });
-        let past = pixels().map(|at| {
+        let past = |at: At| {
             let [frames, missing, unsteady] = self.counts[index(at)];
             let packed = frames + 256.0 * (missing + 32.0 * unsteady);
             [self.past_depth(at), packed, 9.0, 9.0]
-        });
-        let [size, whole] = [SIZE, whole].map(|size| size.map(|k| k as u32));
+        };
+        let whole = whole.map(|k| k as u32);
         let depth = floats(whole, &depths);
         let motion = gpu().texture(whole, &motion.collect::<Vec<_>>());
-        let past = gpu().texture(size, &past.collect::<Vec<_>>());
-        let [ink, past_ink] = [&self.ink, &self.past_ink].map(|ink| gpu().texture(size, ink));
+        let past = larger(past);
+        let [ink, past_ink] = [&self.ink, &self.past_ink].map(|ink| larger(|at| ink[index(at)]));
         let entries = [
             texture(2, &depth),
             texture(23, &ink),
@@ -176,14 +192,15 @@ impl Scene {
 
     /// Positions of the grid are a quarter of a pixel away from those of the viewport.
     fn body(&self) -> String {
-        let (scale, spacing, share) = (self.scale, self.spacing, self.share);
+        let (spacing, share) = (self.spacing, self.share);
+        let ([right, down], [grid_width, grid_height]) = (self.scale, self.grid());
         let [factor, constant] = self.reference;
         let [width, height] = SIZE;
         let [left, top] = ORIGIN;
         format!(
             "line_pass.seen.viewport = vec4(5, 7, {width}, {height});
-             line_pass.grid.rect = vec4({left}, {top}, {width} * {scale}, {height} * {scale});
-             line_pass.grid.from_viewport = vec4({scale}.0, {scale}.0, -0.25, 0.25);
+             line_pass.grid.rect = vec4({left}, {top}, {grid_width}, {grid_height});
+             line_pass.grid.from_viewport = vec4({right:?}, {down:?}, -0.25, 0.25);
              line_pass.memory.spacing = {spacing};
              line_pass.memory.share = {share:?};
              line_pass.settings.jump = 0.25;
@@ -206,7 +223,7 @@ impl Scene {
             [0, 1, 2].map(|k| nearby.iter().map(|ink| ink[k]).reduce(pick).expect("nine"))
         };
         let centre = [0, 1].map(|k| {
-            let place = (at[k] as f64 + 0.5) * self.scale as f64 + [-0.25, 0.25][k];
+            let place = (at[k] as f64 + 0.5) * self.scale[k] + [-0.25, 0.25][k];
             place.floor() as i64
         });
         // Surfaces are in the order of their depths.
@@ -226,7 +243,7 @@ impl Scene {
             nearest: DEPTHS[nearest(1)].into(),
             wide: DEPTHS[nearest(2)].into(),
             past_nearest: past_depth(from),
-            past_wide: past_nearest(from, self.spacing, [self.scale as f64; 2], past_depth),
+            past_wide: past_nearest(from, self.spacing, self.scale, past_depth),
             counts: self.counts[index(from)].map(f64::from),
             seen: (0..2).all(|k| place[k] >= 0.0 && place[k] < SIZE[k] as f64),
             speed: moved[0].hypot(moved[1]),
@@ -287,18 +304,21 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
     assert!(doubtful < 40, "{doubtful}");
 }
 
-/// Views that stand still, drift, and move; with grids that are as fine as the picture and finer;
-/// with jumps as in perspective and in an orthographic view; and without memory.
+/// Views that stand still, drift, and move; with grids that are as fine as the picture, finer, and
+/// coarser, as an upscaler's; with jumps as in perspective and in an orthographic view; and without
+/// memory.
 #[test]
 fn remembered_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
     let mut tally = [0; 6];
     for motions in [STILL, SLOW, MOVING] {
         for (grid, share) in [
-            ([1, 1], 0.125),
-            ([1, 2], 0.25),
-            ([2, 3], 0.125),
-            ([1, 1], 1.0),
+            (([1.0, 1.0], 1), 0.125),
+            (([1.0, 1.0], 2), 0.25),
+            (([2.0, 2.0], 3), 0.125),
+            (([0.5, 0.5], 1), 0.125),
+            (([2.0, 1.0], 3), 0.25),
+            (([1.0, 1.0], 1), 1.0),
         ] {
             let scene = Scene::new(&mut n, grid, share, motions);
             assert_matches_the_reference(&scene, &mut tally);
