@@ -7,9 +7,9 @@ use bevy::{
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::Children,
-        query::{Or, With},
+        query::{Changed, Or, With},
         reflect::ReflectComponent,
-        system::{Query, ResMut},
+        system::{Query, ResMut, SystemParam},
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::GlobalTransform,
@@ -17,7 +17,7 @@ use bevy::{
 
 use super::{
     anchors::{PatternAnchor, anchors},
-    inherit::inherit,
+    inherit::{Inherited, inherit},
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
@@ -166,6 +166,29 @@ impl OutlineStyle {
 /// The components of objects that change how they are drawn.
 type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
 
+/// Whether the table is another one than in the last frame.
+#[derive(SystemParam)]
+pub(crate) struct StyleChanges<'w, 's> {
+    styles: Inherited<'w, 's, OutlineStyle>,
+    bare: Inherited<'w, 's, NoOutlines>,
+    unstyled: Inherited<'w, 's, NoStyle>,
+    anchors: Inherited<'w, 's, PatternAnchor>,
+    moved: Query<'w, 's, (), (With<PatternAnchor>, Changed<GlobalTransform>)>,
+}
+
+impl StyleChanges<'_, '_> {
+    fn any(&mut self) -> bool {
+        let changed = [
+            self.styles.is_changed(),
+            self.bare.is_changed(),
+            self.unstyled.is_changed(),
+            self.anchors.is_changed(),
+            !self.moved.is_empty(),
+        ];
+        changed.contains(&true)
+    }
+}
+
 /// Builds the table of outline styles, and gives each object that has one its slot.
 pub(crate) fn assign_object_styles(
     outlined: Query<(Entity, Option<&OutlineStyle>, Option<&NoOutlines>), Drawn>,
@@ -173,9 +196,11 @@ pub(crate) fn assign_object_styles(
     anchored: Query<(Entity, &PatternAnchor, &GlobalTransform)>,
     children: Query<&Children>,
     mut styles: ResMut<ObjectStyles>,
+    mut changes: StyleChanges,
 ) {
     let unused = outlined.is_empty() && unstyled.is_empty() && anchored.is_empty();
-    if unused && !styles.any() {
+    // All are asked, so that each forgets what was removed.
+    if !changes.any() || (unused && !styles.any()) {
         return;
     }
     let mut outlines: EntityHashMap<ObjectStyleUniform> = EntityHashMap::default();

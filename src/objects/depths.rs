@@ -11,13 +11,15 @@ use bevy::{
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::Children,
-        query::{With, Without},
+        lifecycle::RemovedComponents,
+        query::{Changed, Or, With, Without},
         resource::Resource,
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
     },
     math::{Mat3, Vec2, Vec3},
     mesh::Mesh3d,
+    prelude::DetectChanges,
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
@@ -102,13 +104,63 @@ const SHARED: u32 = 2;
 /// The boxes of all objects, while some view asks for their places.
 #[derive(Resource, Default)]
 struct ObjectBounds {
-    boxes: EntityHashMap<Bounds>,
+    /// The object of each mesh, and the mesh's box.
+    meshes: EntityHashMap<(Entity, Bounds)>,
+    /// The meshes of each object, and the box around them.
+    objects: EntityHashMap<(Vec<Entity>, Bounds)>,
     /// The dials of abstraction of the objects that have their own.
     dials: EntityHashMap<Vec2>,
+    /// Whether some view asked in the last frame.
+    asked: bool,
+    /// Whether the buffer has yet to follow.
+    changed: bool,
     buffer: StorageBuffer<Vec<BoundsUniform>>,
 }
 
 impl ObjectBounds {
+    /// Sets the box of a mesh, or that it has none.
+    fn set(&mut self, mesh: Entity, found: Option<(Entity, Bounds)>) {
+        let before = match found {
+            Some(found) => self.meshes.insert(mesh, found),
+            None => self.meshes.remove(&mesh),
+        };
+        if before == found {
+            return;
+        }
+        self.changed = true;
+        if let Some((object, bounds)) = found {
+            let (meshes, around) = self.objects.entry(object).or_insert((Vec::new(), bounds));
+            if !meshes.contains(&mesh) {
+                meshes.push(mesh);
+            }
+            if meshes.len() == 1 {
+                *around = bounds;
+            } else {
+                self.unite(object);
+            }
+        }
+        if let Some((object, _)) = before.filter(|old| found.is_none_or(|new| new.0 != old.0)) {
+            if let Some((meshes, _)) = self.objects.get_mut(&object) {
+                meshes.retain(|other| *other != mesh);
+            }
+            self.unite(object);
+        }
+    }
+
+    /// Finds the box around the meshes of an object anew.
+    fn unite(&mut self, object: Entity) {
+        let Some((meshes, around)) = self.objects.get_mut(&object) else {
+            return;
+        };
+        let boxes = meshes.iter().filter_map(|mesh| self.meshes.get(mesh));
+        match boxes.map(|(_, bounds)| *bounds).reduce(Bounds::with) {
+            Some(bounds) => *around = bounds,
+            None => {
+                self.objects.remove(&object);
+            }
+        }
+    }
+
     /// The boxes of this frame: the buffer may be longer, and the shader reads its length.
     fn binding(&self) -> Option<BindingResource<'_>> {
         let size = self.buffer.get().len() as u64 * BoundsUniform::min_size().get();
@@ -120,33 +172,59 @@ impl ObjectBounds {
     }
 }
 
+/// Meshes with their boxes and places.
+type Boxed = (Entity, &'static Aabb, &'static GlobalTransform);
+
+type OtherBox = (With<Mesh3d>, Or<(Changed<GlobalTransform>, Changed<Aabb>)>);
+
 fn extract_bounds(
     views: Query<(), With<ObjectDepthRequest>>,
     groups: Res<ObjectGroups>,
-    meshes: Extract<Query<(Entity, &Aabb, &GlobalTransform), With<Mesh3d>>>,
+    meshes: Extract<Query<Boxed, With<Mesh3d>>>,
+    changed: Extract<Query<Boxed, OtherBox>>,
+    (mut unmeshed, mut unboxed): (
+        Extract<RemovedComponents<Mesh3d>>,
+        Extract<RemovedComponents<Aabb>>,
+    ),
     (dialled, children): (
         Extract<Query<(Entity, &ObjectAbstraction)>>,
         Extract<Query<&Children>>,
     ),
     mut bounds: ResMut<ObjectBounds>,
 ) {
-    bounds.boxes.clear();
-    bounds.dials.clear();
+    let bounds = &mut *bounds;
+    let gone: Vec<Entity> = unmeshed.read().chain(unboxed.read()).collect();
     if views.is_empty() {
+        if std::mem::take(&mut bounds.asked) {
+            *bounds = ObjectBounds::default();
+        }
         return;
     }
-    let dials = dials(&dialled, &children);
-    for (mesh, aabb, at) in &meshes {
-        if let Some(found) = Bounds::of(aabb, at) {
-            let object = groups.object(mesh);
-            let known = bounds.boxes.get(&object);
-            let known = known.map_or(found, |known| known.with(found));
-            bounds.boxes.insert(object, known);
-            if let Some(dial) = dials.get(&mesh) {
-                bounds.dials.insert(object, *dial);
-            }
+    let found = |(mesh, aabb, at): (Entity, &Aabb, &GlobalTransform)| {
+        let bounds = Bounds::of(aabb, at)?;
+        Some((groups.object(mesh), bounds))
+    };
+    if !bounds.asked || groups.is_changed() {
+        bounds.asked = true;
+        bounds.changed = true;
+        bounds.meshes.clear();
+        bounds.objects.clear();
+        for mesh in &meshes {
+            bounds.set(mesh.0, found(mesh));
+        }
+    } else {
+        for mesh in gone.into_iter().filter(|mesh| !meshes.contains(*mesh)) {
+            bounds.set(mesh, None);
+        }
+        for mesh in &changed {
+            bounds.set(mesh.0, found(mesh));
         }
     }
+    let dials = dials(&dialled, &children).into_iter();
+    let dials = dials.filter_map(|(mesh, dial)| Some((bounds.meshes.get(&mesh)?.0, dial)));
+    let dials = dials.collect();
+    bounds.changed |= bounds.dials != dials;
+    bounds.dials = dials;
 }
 
 /// On a view whose effects treat objects as a whole: the table of their places.
@@ -242,30 +320,32 @@ fn prepare_places(
     if views.is_empty() {
         return;
     }
-    let dials = &bounds.dials;
-    let found = bounds.boxes.iter().filter_map(|(object, bounds)| {
-        let (id, is_new) = ids.own(*object)?;
-        Some(BoundsUniform {
-            centre: bounds.low.midpoint(bounds.high),
+    let bounds = &mut *bounds;
+    if std::mem::take(&mut bounds.changed) || ids.are_new() || bounds.buffer.buffer().is_none() {
+        let found = ids.of_objects().filter_map(|(object, id, is_new)| {
+            let (_, found) = bounds.objects.get(&object)?;
+            Some(BoundsUniform {
+                centre: found.low.midpoint(found.high),
+                id: u32::from(id),
+                half: 0.5 * (found.high - found.low),
+                state: if is_new { FRESH } else { KNOWN },
+                dial: bounds.dials.get(&object).copied().unwrap_or(BY_DISTANCE),
+                ..BoundsUniform::default()
+            })
+        });
+        let shared = ids.shared().map(|id| BoundsUniform {
             id: u32::from(id),
-            half: 0.5 * (bounds.high - bounds.low),
-            state: if is_new { FRESH } else { KNOWN },
-            dial: dials.get(object).copied().unwrap_or(BY_DISTANCE),
+            state: SHARED,
             ..BoundsUniform::default()
-        })
-    });
-    let shared = ids.shared().map(|id| BoundsUniform {
-        id: u32::from(id),
-        state: SHARED,
-        ..BoundsUniform::default()
-    });
-    let mut found: Vec<_> = found.chain(shared).collect();
-    // A buffer is never empty. The id 0 is left out.
-    found.push(BoundsUniform::default());
+        });
+        let mut found: Vec<_> = found.chain(shared).collect();
+        // A buffer is never empty. The id 0 is left out.
+        found.push(BoundsUniform::default());
+        bounds.buffer.set(found);
+        bounds.buffer.write_buffer(&device, &queue);
+    }
     let places = (ids.len() as u64 + 1).next_power_of_two();
     let size = PLACE * places.max(LEAST_PLACES);
-    bounds.buffer.set(found);
-    bounds.buffer.write_buffer(&device, &queue);
     for (entity, request, known, table) in &views {
         let forgets = known.is_none_or(|places| places.is_past(request));
         let mut uniform = UniformBuffer::from(ObjectEye {

@@ -155,7 +155,9 @@ pub(super) fn queue_object_ids(
             key,
         };
         queue.update((view.retained_view_entity, class), &changes);
-        phase.note_ahead(&test, &items);
+        if test.compiles_ahead() {
+            phase.note_ahead(&test, &items);
+        }
         let writes = key.targets.filter(|_| phase.has(Layer::OwnDepth));
         match writes {
             Some(targets) if queued != Some(&targets) => {

@@ -1,10 +1,45 @@
 //! Components that apply to descendants too.
 
-use bevy::ecs::{
-    entity::{Entity, EntityHashMap},
-    hierarchy::Children,
-    system::Query,
+use bevy::{
+    app::App,
+    ecs::{
+        change_detection::DetectChanges,
+        component::Component,
+        entity::{Entity, EntityHashMap},
+        hierarchy::{ChildOf, Children},
+        lifecycle::{Insert, Remove, RemovedComponents},
+        observer::On,
+        query::Changed,
+        resource::Resource,
+        system::{Query, Res, ResMut, SystemParam},
+    },
+    prelude::DetectChangesMut,
 };
+
+/// Changes when some entity gets another parent, or none.
+#[derive(Resource, Default)]
+pub(super) struct Tree;
+
+pub(super) fn build(app: &mut App) {
+    app.init_resource::<Tree>()
+        .add_observer(|_: On<Insert, ChildOf>, mut tree: ResMut<Tree>| tree.set_changed())
+        .add_observer(|_: On<Remove, ChildOf>, mut tree: ResMut<Tree>| tree.set_changed());
+}
+
+/// Whether a component applies to other entities than before, or says something else.
+#[derive(SystemParam)]
+pub(super) struct Inherited<'w, 's, C: Component> {
+    changed: Query<'w, 's, (), Changed<C>>,
+    removed: RemovedComponents<'w, 's, C>,
+    tree: Res<'w, Tree>,
+}
+
+impl<C: Component> Inherited<'_, '_, C> {
+    pub fn is_changed(&mut self) -> bool {
+        let removed = self.removed.read().count() > 0;
+        removed || self.tree.is_changed() || !self.changed.is_empty()
+    }
+}
 
 /// Adds an entity with what a component of it says; if that is `inherited`, its descendants
 /// too, up to those that have the component themselves.

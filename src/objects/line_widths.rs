@@ -32,7 +32,7 @@ use bevy::{
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
     changes::ChangedObjects,
-    inherit::inherit,
+    inherit::{Inherited, inherit},
     phase::ObjectIdPhases,
     pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
@@ -91,8 +91,9 @@ pub(super) fn find_wide_meshes(
     children: Query<&Children>,
     mut meshes: ResMut<WideMeshes>,
     mut styles: ResMut<ObjectStyles>,
+    mut changes: Inherited<LineWidths>,
 ) {
-    if marked.is_empty() && meshes.0.is_empty() {
+    if !changes.is_changed() || (marked.is_empty() && meshes.0.is_empty()) {
         return;
     }
     let mut found: EntityHashMap<()> = EntityHashMap::default();

@@ -21,7 +21,7 @@ use bevy::{
 
 use super::{
     changes::ChangedObjects,
-    inherit::inherit,
+    inherit::{Inherited, inherit},
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
@@ -195,8 +195,11 @@ fn assign_marks(
     marked: Query<(Entity, Option<&SelectionOutline>, Option<&XRayOutline>), Marked>,
     children: Query<&Children>,
     (mut marks, mut styles): (ResMut<Marks>, ResMut<ObjectStyles>),
+    (mut selected, mut x_ray): (Inherited<SelectionOutline>, Inherited<XRayOutline>),
 ) {
-    if marked.is_empty() && !marks.styles.any() {
+    // Both are asked, so that each forgets what was removed.
+    let changed = [selected.is_changed(), x_ray.is_changed()].contains(&true);
+    if !changed || (marked.is_empty() && !marks.styles.any()) {
         return;
     }
     let mut found: EntityHashMap<(Entity, ObjectStyleUniform)> = EntityHashMap::default();

@@ -250,6 +250,7 @@ impl Plugin for ObjectsPlugin {
                         .chain()
                         .after(bevy::transform::TransformSystems::Propagate),
                 );
+            inherit::build(app);
             depth_test::build(app);
             marks::build(app);
             groups::build(app);

@@ -37,6 +37,8 @@ pub struct ObjectIds {
     /// again are still in it.
     free: VecDeque<(u16, u32)>,
     frame: u32,
+    /// The last frame in which an object came into view.
+    given: u32,
     /// Whether objects ever had to share ids.
     any_shared: bool,
 }
@@ -74,12 +76,17 @@ impl ObjectIds {
         self.slots.is_empty()
     }
 
-    /// The id of an object alone, and whether it is new since the last frame; `None` if it has
-    /// none, or shares it.
-    pub(super) fn own(&self, object: Entity) -> Option<(u16, bool)> {
-        let id = self.get(object)?;
-        let slot = &self.slots[usize::from(id) - 1];
-        (!slot.shared && slot.meshes > 0).then_some((id, slot.since == self.frame))
+    /// The objects in view that have an id alone, and whether it is new in this frame.
+    pub(super) fn of_objects(&self) -> impl Iterator<Item = (Entity, u16, bool)> {
+        let alone = self.slots.iter().zip(1..);
+        alone
+            .filter(|(slot, _)| slot.meshes > 0 && !slot.shared)
+            .map(|(slot, id)| (slot.object, id, slot.since == self.frame))
+    }
+
+    /// Whether objects came into view in this frame or in the last one.
+    pub(super) fn are_new(&self) -> bool {
+        self.frame.wrapping_sub(self.given) < 2
     }
 
     /// The ids that several objects have.
@@ -91,7 +98,11 @@ impl ObjectIds {
     /// Gives a mesh the id of its object.
     pub(super) fn give(&mut self, object: Entity) -> u16 {
         let id = self.get(object).unwrap_or_else(|| self.find(object));
-        self.slots[usize::from(id) - 1].meshes += 1;
+        let slot = &mut self.slots[usize::from(id) - 1];
+        if slot.meshes == 0 {
+            self.given = self.frame;
+        }
+        slot.meshes += 1;
         id
     }
 
@@ -146,6 +157,7 @@ impl ObjectIds {
         let id = (object.index_u32() % u32::from(u16::MAX) + 1) as u16;
         self.slots[usize::from(id) - 1].shared = true;
         self.any_shared = true;
+        self.given = self.frame;
         id
     }
 }
@@ -173,7 +185,7 @@ mod tests {
             for i in 0..5 {
                 let new = object(frame * 5 + i);
                 let id = ids.give(new);
-                assert_eq!(ids.own(new), Some((id, true)));
+                assert!(ids.of_objects().any(|found| found == (new, id, true)));
                 let same = given
                     .iter()
                     .find(|(old, left)| *old == id && left + REST > frame);
@@ -192,7 +204,7 @@ mod tests {
         ids.take(id);
         ids.frame += 10;
         assert_eq!(ids.give(last), id);
-        assert_eq!(ids.own(last), Some((id, false)));
+        assert!(ids.of_objects().any(|found| found == (last, id, false)));
     }
 
     #[test]
@@ -200,8 +212,7 @@ mod tests {
         let mut ids = ObjectIds::default();
         let all: Vec<u16> = (0..70_000).map(|index| ids.give(object(index))).collect();
         assert!(all.iter().all(|id| *id > 0));
-        let own = (0..70_000).filter_map(|index| ids.own(object(index)));
-        let alone = own.count();
+        let alone = ids.of_objects().count();
         assert!(alone >= 65_535 - (70_000 - 65_535), "{alone}");
         for id in all {
             ids.take(id);

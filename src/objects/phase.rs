@@ -115,6 +115,8 @@ const GONE: u32 = u32::MAX;
 struct Contents {
     bin: Option<Bin>,
     instances: Vec<Instance>,
+    /// The number of those that are sorted.
+    sorted: usize,
 }
 
 /// What the pipelines of a view's bins depend on, besides meshes and materials.
@@ -196,7 +198,8 @@ impl ObjectIdPhase {
     /// [`settle`](Self::settle).
     pub fn remove(&mut self, mesh: MainEntity, ids: &mut ObjectIds) {
         for bin in self.places.remove(&mesh).into_iter().flatten().flatten() {
-            let instances = &mut self.contents[bin as usize].instances;
+            let contents = &mut self.contents[bin as usize];
+            let instances = &mut contents.instances[..contents.sorted];
             if let Ok(at) = instances.binary_search_by_key(&mesh, |instance| instance.mesh) {
                 instances[at].input = GONE;
                 ids.take(instances[at].record[0] as u16);
@@ -229,6 +232,7 @@ impl ObjectIdPhase {
             let instances = &mut contents.instances;
             instances.retain(|instance| instance.input != GONE);
             instances.sort_by_key(|instance| instance.mesh);
+            contents.sorted = instances.len();
             if instances.is_empty()
                 && let Some(bin) = contents.bin.take()
             {

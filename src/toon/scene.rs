@@ -514,3 +514,6 @@ pub(super) fn follow_materials(
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -6,6 +6,7 @@
 use std::time::Instant;
 
 use bevy::{
+    camera::RenderTarget,
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
     render::{Render, RenderApp, RenderSystems},
@@ -15,7 +16,7 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::{
     bench,
-    headless::{Headless, HeadlessOptions},
+    headless::{Headless, HeadlessOptions, new_target},
 };
 
 use crate::{Run, table::Table};
@@ -39,6 +40,13 @@ enum Variant {
     Moving,
     /// Default outlines; the camera turns, so that objects enter and leave.
     Turning,
+    /// Default outlines; the objects have a thousand meshes.
+    Meshes,
+    /// Default outlines in eight cameras.
+    Cameras,
+    /// No object is in view; without the plugin, and with it.
+    UnseenWithoutPlugin,
+    UnseenIdle,
     /// An empty [`ToonScene`].
     EmptyScene,
     /// Each of a thousand objects is a [`ToonScene`].
@@ -46,7 +54,7 @@ enum Variant {
 }
 
 impl Variant {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 14] = [
         Self::WithoutPlugin,
         Self::Idle,
         Self::Prepasses,
@@ -55,6 +63,10 @@ impl Variant {
         Self::NoOutlines,
         Self::Moving,
         Self::Turning,
+        Self::Meshes,
+        Self::Cameras,
+        Self::UnseenWithoutPlugin,
+        Self::UnseenIdle,
         Self::EmptyScene,
         Self::Scenes,
     ];
@@ -69,6 +81,10 @@ impl Variant {
             Self::NoOutlines => "outlines; one object without",
             Self::Moving => "outlines; 1 % move",
             Self::Turning => "outlines; the camera turns",
+            Self::Meshes => "outlines; 1000 meshes",
+            Self::Cameras => "outlines; 8 cameras",
+            Self::UnseenWithoutPlugin => "without the plugin; none in view",
+            Self::UnseenIdle => "idle plugin; none in view",
             Self::EmptyScene => "idle; an empty toon scene",
             Self::Scenes => "idle; 1000 toon scenes",
         }
@@ -77,8 +93,18 @@ impl Variant {
     fn has_lines(self) -> bool {
         matches!(
             self,
-            Self::Outlines | Self::WithoutIds | Self::NoOutlines | Self::Moving | Self::Turning
+            Self::Outlines
+                | Self::WithoutIds
+                | Self::NoOutlines
+                | Self::Moving
+                | Self::Turning
+                | Self::Meshes
+                | Self::Cameras
         )
+    }
+
+    fn has_plugin(self) -> bool {
+        !matches!(self, Self::WithoutPlugin | Self::UnseenWithoutPlugin)
     }
 }
 
@@ -128,7 +154,7 @@ impl Plugin for StagesPlugin {
 struct Crowd {
     headless: Headless,
     variant: Variant,
-    camera: Entity,
+    cameras: Vec<Entity>,
     cubes: Vec<Entity>,
 }
 
@@ -139,14 +165,16 @@ impl Crowd {
             parallel_systems: true,
             ..default()
         };
-        let mut headless = if variant == Variant::WithoutPlugin {
-            Headless::new(options, StagesPlugin)
+        let mut headless = if variant.has_plugin() {
+            Headless::new(options.clone(), (ComicsPlugin, StagesPlugin))
         } else {
-            Headless::new(options, (ComicsPlugin, StagesPlugin))
+            Headless::new(options.clone(), StagesPlugin)
         };
         let target = headless.render_target();
         let world = headless.app.world_mut();
-        let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+        let meshes = if variant == Variant::Meshes { 1000 } else { 1 };
+        let mut assets = world.resource_mut::<Assets<Mesh>>();
+        let meshes: Vec<_> = (0..meshes).map(|_| assets.add(Cuboid::default())).collect();
         let material = world
             .resource_mut::<Assets<StandardMaterial>>()
             .add(StandardMaterial {
@@ -163,24 +191,30 @@ impl Crowd {
                 (at / side / side).floor(),
             )
         };
-        let cube = |at| {
-            let at = Transform::from_translation(place(at) - side)
-                .with_rotation(Quat::from_rotation_y(at as f32));
-            (Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), at)
+        let cube = |index: usize| {
+            let at = Transform::from_translation(place(index) - side)
+                .with_rotation(Quat::from_rotation_y(index as f32));
+            let mesh = meshes[index % meshes.len()].clone();
+            (Mesh3d(mesh), MeshMaterial3d(material.clone()), at)
         };
         let cubes = (0..count).map(|at| world.spawn(cube(at)).id()).collect();
-        let camera = world
-            .spawn((
-                Camera3d::default(),
-                target,
-                Msaa::Off,
-                Transform::from_xyz(0.0, 0.0, 4.0 * side).looking_at(Vec3::ZERO, Vec3::Y),
-            ))
-            .id();
+        let unseen = matches!(variant, Variant::UnseenWithoutPlugin | Variant::UnseenIdle);
+        let ahead = if unseen { Vec3::Z } else { Vec3::NEG_Z };
+        let at = Transform::from_xyz(0.0, 0.0, 4.0 * side).looking_to(ahead, Vec3::Y);
+        let mut targets = vec![target];
+        if variant == Variant::Cameras {
+            let new = |_| new_target(world, options.size, options.format).into();
+            targets.extend((1..8).map(new));
+        }
+        let camera = |target: RenderTarget| (Camera3d::default(), target, Msaa::Off, at);
+        let cameras = targets
+            .into_iter()
+            .map(|target| world.spawn(camera(target)).id())
+            .collect();
         let mut crowd = Self {
             headless,
             variant,
-            camera,
+            cameras,
             cubes,
         };
         crowd.dress();
@@ -189,22 +223,23 @@ impl Crowd {
 
     /// Adds what the variant is about.
     fn dress(&mut self) {
-        let (camera, cubes) = (self.camera, &self.cubes);
+        let (cameras, cubes) = (&self.cameras, &self.cubes);
         let world = self.headless.app.world_mut();
         if self.variant.has_lines() {
             let mut outlines = Outlines::default();
             if self.variant == Variant::WithoutIds {
                 outlines.objects = None;
             }
-            ComicStyle::new()
-                .with(outlines)
-                .apply(&mut world.commands().entity(camera));
+            let style = ComicStyle::new().with(outlines);
+            for camera in cameras {
+                style.apply(&mut world.commands().entity(*camera));
+            }
             world.flush();
         }
         match self.variant {
             Variant::Prepasses => {
                 world
-                    .entity_mut(camera)
+                    .entity_mut(cameras[0])
                     .insert((DepthPrepass, NormalPrepass));
             }
             Variant::NoOutlines => {
@@ -234,7 +269,7 @@ impl Crowd {
                 }
             }
             Variant::Turning => {
-                if let Some(mut at) = world.get_mut::<Transform>(self.camera) {
+                if let Some(mut at) = world.get_mut::<Transform>(self.cameras[0]) {
                     let angle = if frame % 2 == 0 { 0.1 } else { -0.1 };
                     at.rotate_y(angle);
                 }
@@ -275,13 +310,17 @@ pub fn measure(run: &Run) -> Result<(), String> {
     .concat();
     let mut table = Table::new(&header);
     let counts: &[usize] = if run.quick {
-        &[100]
+        &[1, 100, 200]
     } else {
-        &[1_000, 10_000, 20_000, 60_000, 100_000]
+        &[1, 1_000, 10_000, 20_000, 60_000, 100_000]
     };
     let frames = if run.quick { 1 } else { 9 };
     for &count in counts {
         for variant in Variant::ALL {
+            // A frame of eight cameras takes eight times as long.
+            if variant == Variant::Cameras && count > 10_000 {
+                continue;
+            }
             let mut crowd = Crowd::new(variant, count);
             // Pipelines compile, and textures and buffers get their size.
             crowd.headless.step(4);

@@ -11,9 +11,8 @@ use bevy::{
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::Children,
-        lifecycle::RemovedComponents,
         message::MessageReader,
-        query::{Changed, Or},
+        query::Changed,
         reflect::ReflectComponent,
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
@@ -34,7 +33,7 @@ use self::divide::Surface;
 use super::{
     components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
-    inherit::inherit,
+    inherit::{Inherited, inherit},
     table::ObjectStyles,
 };
 use crate::settings::{FieldRange, clamp_or_default};
@@ -145,17 +144,14 @@ pub(super) struct Divided<'w, 's> {
     children: Query<'w, 's, &'static Children>,
     meshes: Query<'w, 's, &'static Mesh3d>,
     groups: Res<'w, ObjectGroups>,
-    changed: Query<'w, 's, (), Changes>,
-    removed: RemovedComponents<'w, 's, MeshSections>,
-    left: RemovedComponents<'w, 's, Children>,
+    changed: Inherited<'w, 's, MeshSections>,
+    other_mesh: Query<'w, 's, (), Changed<Mesh3d>>,
 }
-
-type Changes = Or<(Changed<MeshSections>, Changed<Children>, Changed<Mesh3d>)>;
 
 impl Divided<'_, '_> {
     fn is_changed(&mut self) -> bool {
-        let gone = self.removed.read().count() + self.left.read().count();
-        gone > 0 || self.groups.is_changed() || !self.changed.is_empty()
+        let changed = self.changed.is_changed() || self.groups.is_changed();
+        changed || !self.other_mesh.is_empty()
     }
 
     fn keys(&self) -> EntityHashMap<EntitySections> {

@@ -32,7 +32,7 @@ use self::{
 use super::{
     changes::{ChangedObjects, NoteChanges},
     depth_test::count_ids,
-    inherit::inherit,
+    inherit::{Inherited, inherit},
     instances::expand_instances,
     table::DepthWrites,
 };
@@ -105,8 +105,9 @@ fn assign_depth_writes(
     asking: Query<(Entity, &DepthWrite)>,
     children: Query<&Children>,
     mut writes: ResMut<DepthWrites>,
+    mut changes: Inherited<DepthWrite>,
 ) {
-    if asking.is_empty() && writes.cutoffs.is_empty() {
+    if !changes.is_changed() || (asking.is_empty() && writes.cutoffs.is_empty()) {
         return;
     }
     let mut cutoffs = EntityHashMap::default();

@@ -1,39 +1,12 @@
 //! An edit in a place is what the mesh is drawn with, and stays.
 
-use bevy::{
-    app::{App, TaskPoolPlugin, Update},
-    asset::{AssetApp, AssetPlugin},
-    ecs::{hierarchy::ChildOf, schedule::IntoScheduleConfigs},
-    pbr::StandardMaterial,
-};
+use bevy::{app::App, ecs::hierarchy::ChildOf};
 
 use super::*;
-use crate::toon::{MaterialName, scene};
-
-/// The part of the plugin that shadings and scenes need.
-fn app() -> App {
-    let mut app = App::new();
-    app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()))
-        .init_asset::<StandardMaterial>()
-        .init_asset::<ToonMaterial>()
-        .init_asset::<ToonShading>()
-        .add_systems(
-            Update,
-            (
-                scene::apply_shadings,
-                scene::find_meshes,
-                scene::follow_materials,
-                scene::convert,
-            )
-                .chain(),
-        );
-    scene::build(&mut app);
-    app
-}
-
-fn add<A: bevy::asset::Asset>(app: &mut App, asset: A) -> Handle<A> {
-    app.world_mut().resource_mut::<Assets<A>>().add(asset)
-}
+use crate::toon::{
+    MaterialName,
+    scene::tests::{add, app},
+};
 
 fn lit(highlight: f32) -> ToonLight {
     ToonLight {

@@ -4,6 +4,7 @@
 mod figures;
 mod index;
 mod ink;
+mod objects;
 mod others;
 mod page;
 mod parts;
@@ -99,6 +100,7 @@ fn body(folder: &Path) -> Result<String, String> {
     parts::parts(&mut out, folder)?;
     toon::toon(&mut out, folder)?;
     scenes::growth(&mut out, folder)?;
+    objects::many_objects(&mut out, folder)?;
     others::peers(&mut out, folder)?;
     others::flicker(&mut out, folder)?;
     soak::soak(&mut out, folder)?;
