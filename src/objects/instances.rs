@@ -252,7 +252,6 @@ pub(super) fn bind_instances(
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     device: Res<RenderDevice>,
 ) {
-    let layout = cache.get_bind_group_layout(&shared.layout);
     for phase in phases.0.values_mut() {
         let buffers = &mut phase.buffers;
         buffers.expansion = if buffers.work.is_empty() {
@@ -265,6 +264,7 @@ pub(super) fn bind_instances(
                 entry(0, objects.as_entire_binding()),
                 entry(1, sections.as_entire_binding()),
             ];
+            let layout = cache.get_bind_group_layout(&shared.layout);
             device.create_bind_group("comics_objects", &layout, &entries)
         });
     }

@@ -78,7 +78,7 @@ impl ObjectIds {
 
     /// The objects in view that have an id alone, and whether it is new in this frame.
     pub(super) fn of_objects(&self) -> impl Iterator<Item = (Entity, u16, bool)> {
-        let alone = self.slots.iter().zip(1..);
+        let alone = self.slots.iter().zip(1..=u16::MAX);
         alone
             .filter(|(slot, _)| slot.meshes > 0 && !slot.shared)
             .map(|(slot, id)| (slot.object, id, slot.since == self.frame))
@@ -91,7 +91,11 @@ impl ObjectIds {
 
     /// The ids that several objects have.
     pub(super) fn shared(&self) -> impl Iterator<Item = u16> {
-        let slots = self.slots.iter().zip(1..).filter(|_| self.any_shared);
+        let slots = self
+            .slots
+            .iter()
+            .zip(1..=u16::MAX)
+            .filter(|_| self.any_shared);
         slots.filter(|(slot, _)| slot.shared).map(|(_, id)| id)
     }
 

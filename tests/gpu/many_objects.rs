@@ -10,7 +10,7 @@ use bevy::{
 };
 use bevy_comics::testing::ObjectWork;
 
-use crate::prelude::*;
+use crate::{failures::devices::without_compute, prelude::*};
 
 const SIDE: u32 = 32;
 
@@ -166,6 +166,16 @@ fn each_pixel_has_the_id_of_the_first_object_on_its_ray() {
         assert_ids(&mut small, &cubes, &format!("{case} {how}"));
         assert_eq!(small.errors(), 0, "{case} {how}");
     }
+    let mut small = without_compute(UVec2::splat(SIDE));
+    small.clear();
+    let cubes = put_cubes(&mut small, 400, |_, _| {});
+    small.insert((
+        Transform::from_xyz(0.0, 0.0, 25.0),
+        DepthPrepass,
+        Outlines::default(),
+    ));
+    small.settle();
+    assert_ids(&mut small, &cubes, "expanded by the CPU");
 }
 
 /// What the pass of ids did in the frames so far.
