@@ -37,9 +37,9 @@ use bevy::{
 
 use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
-    abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
     object_id::object_id,
+    simplification::{BY_DISTANCE, ObjectSimplification, dials},
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
@@ -96,7 +96,7 @@ impl Bounds {
 #[derive(Resource, Default)]
 struct ObjectBounds {
     by_id: HashMap<u16, Bounds>,
-    /// The dials of abstraction of the objects that have their own.
+    /// The dials of the objects that have a simplification of their own.
     dials: HashMap<u16, Vec2>,
     buffer: StorageBuffer<Vec<BoundsUniform>>,
 }
@@ -106,7 +106,7 @@ fn extract_bounds(
     groups: Res<ObjectGroups>,
     meshes: Extract<Query<(Entity, &Aabb, &GlobalTransform), With<Mesh3d>>>,
     (dialled, children): (
-        Extract<Query<(Entity, &ObjectAbstraction)>>,
+        Extract<Query<(Entity, &ObjectSimplification)>>,
         Extract<Query<&Children>>,
     ),
     mut bounds: ResMut<ObjectBounds>,

@@ -3,8 +3,6 @@
 //! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
-mod abstraction;
-#[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
 mod depth_test;
@@ -43,6 +41,8 @@ mod plugin;
 mod sections;
 #[cfg(feature = "objects")]
 mod shading;
+#[cfg(feature = "objects")]
+mod simplification;
 mod table;
 #[cfg(feature = "objects")]
 mod transparent;
@@ -50,8 +50,6 @@ mod widths;
 
 #[cfg(feature = "objects")]
 mod components;
-#[cfg(feature = "objects")]
-pub use abstraction::ObjectAbstraction;
 #[cfg(feature = "objects")]
 pub use anchors::PatternAnchor;
 #[cfg(feature = "objects")]
@@ -72,6 +70,8 @@ pub use marks::{SelectionOutline, XRayOutline};
 pub use object_id::object_id;
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
+#[cfg(feature = "objects")]
+pub use simplification::ObjectSimplification;
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
@@ -234,7 +234,7 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
                 .register_type::<PatternAnchor>()
-                .register_type::<ObjectAbstraction>()
+                .register_type::<ObjectSimplification>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()
                 .add_systems(
