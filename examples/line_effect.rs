@@ -4,7 +4,7 @@
 use bevy::prelude::*;
 use bevy_comics::{
     effect::*,
-    lines::{LineFocus, LineModifiers},
+    lines::{LineFade, LineModifiers},
     prelude::*,
 };
 use serde::{Deserialize, Serialize};
@@ -57,7 +57,7 @@ impl Effect for Emphasis {
 
     fn line_modifiers(&self, _: &EffectContext) -> LineModifiers {
         LineModifiers {
-            focus: Some(LineFocus {
+            fade: Some(LineFade {
                 distance: Some(self.distance),
                 // Lines are whole up to 1.2 times the distance, and fade up to 2.2 times.
                 clear: 1.2f32.ln(),

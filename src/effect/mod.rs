@@ -73,7 +73,8 @@ pub trait Effect:
     + DeserializeOwned
 {
     /// The effect's name, unique in the app: its key in style files, the name of its WGSL function
-    /// and, in capitals, its shader definition. In `snake_case`; the last character is a letter.
+    /// and, in capitals after `EFFECT_`, its shader definition. In `snake_case`; the last character
+    /// is a letter.
     const NAME: &'static str;
 
     /// When the effect applies. Stages run in the order of [`EffectStage`]; within

@@ -34,48 +34,6 @@ const MODULES: [&str; 23] = [
     "bevy_comics::objects",
 ];
 
-/// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 38] = [
-    "depth",
-    "depth_borders",
-    "map",
-    "map_flags",
-    "visible_range",
-    "multisampled",
-    "samples",
-    "oblique",
-    "same_size",
-    "normals",
-    "object_ids",
-    "object_styles",
-    "object_anchors",
-    "object_depths",
-    "lines",
-    "lines_anywhere",
-    "line_owners",
-    "surface_lines",
-    "layer_ink",
-    "in_layers",
-    "lightness_change",
-    "blue_noise",
-    "finish",
-    "overlay",
-    "stored_srgb",
-    "stored_oklab",
-    "unstyled",
-    "unstyled_colors",
-    "unstyled_print",
-    "continued",
-    "layer",
-    "box_statistics",
-    "draws_box_statistics",
-    "box_statistics_down",
-    "max_radius",
-    "aux_scalar",
-    "draws_numbers",
-    "inside",
-];
-
 /// Why an effect cannot be registered beside the `known` ones; `None` if it can.
 pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'static str> {
     let name = effect.name;
@@ -86,13 +44,8 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         || !name.chars().all(plain)
     {
         Some("its name is not in snake_case, or ends with a digit or an underscore")
-    } else if DEFINITIONS.contains(&name)
-        || FILE_KEYS.contains(&name)
-        || ["view_", "without_", "boxes_", "numbers_", "reaches_"]
-            .iter()
-            .any(|prefix| name.starts_with(prefix))
-    {
-        Some("its name is reserved")
+    } else if FILE_KEYS.contains(&name) {
+        Some("its name is a key of style files")
     } else if !defines(effect.shader.source, effect.shader.path) {
         Some("its WGSL does not define the import path in SHADER.path")
     } else if MODULES.contains(&effect.shader.path)

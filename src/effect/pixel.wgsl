@@ -26,8 +26,8 @@ struct Pixel {
     // Factors that DepthLayers has set, 0 to 1: of the darkness of hatching, and of the fraction of
     // screens that is seen as dots. 1 again in a later pass, see Needs::PICTURE.
     prints: vec2<f32>,
-    // Set by Abstraction: how often the bands of tones split, and the factor of the distance of
-    // strokes. 0 and 1 again in a later pass.
+    // How often the bands of tones split, and the factor of the distance of strokes: 0 and 1
+    // unless an effect sets them, and again in a later pass.
     splits: f32,
     spacing: f32,
     // Change of the unstyled picture's lightness over this pixel (fwidth); 0 unless

@@ -2,9 +2,9 @@
 
 use bevy::shader::ShaderDefVal;
 
-/// Modes of an effect that select a shader variant. Each becomes a shader
-/// definition, whose name is the effect's name in capitals, an underscore, and the
-/// variant's name: `MODE` of the effect `rain` becomes `RAIN_MODE`.
+/// Modes of an effect that select a shader variant. Each becomes a shader definition, whose name is
+/// `EFFECT_`, the effect's name in capitals, an underscore, and the variant's name: `MODE` of the
+/// effect `rain` becomes `EFFECT_RAIN_MODE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Variants {
     pub(crate) effect: &'static str,
@@ -37,5 +37,5 @@ impl Variants {
 
 /// The shader definition of the effect with this name.
 pub(crate) fn definition(name: &str) -> String {
-    name.to_uppercase()
+    format!("EFFECT_{}", name.to_uppercase())
 }

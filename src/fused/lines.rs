@@ -66,11 +66,11 @@ pub(super) fn line_request(
         ),
         motion: has_motion(scene),
         fog: plan.fog.then(|| fog(view)),
-        focus: modifiers
-            .focus
-            .map(|focus| focus.uniform(facts.depth_axis, facts.depth_reference)),
+        fade: modifiers
+            .fade
+            .map(|fade| fade.uniform(facts.depth_axis, facts.depth_reference)),
         layers: modifiers.layers,
-        abstraction: modifiers.abstraction,
+        simplification: modifiers.simplification,
         sheet: sheet(facts),
         reach: settings.reach(view.scale_factor, widest, facts.sheet),
         visible_range: plan.depth_map.mapping.follows_visible_range(),
@@ -106,9 +106,9 @@ pub(super) fn plain_request(
         cuts: view.cuts,
         motion: false,
         fog: None,
-        focus: None,
+        fade: None,
         layers: None,
-        abstraction: None,
+        simplification: None,
         sheet: SheetUniform::default(),
         depth_size,
         samples,

@@ -42,7 +42,7 @@ use bevy::{
 };
 
 pub use cracks::ViewCracks;
-pub use modifiers::{LineAbstraction, LineFocus, LineLayers, LineModifiers, Sheet};
+pub use modifiers::{LineFade, LineLayers, LineModifiers, LineSimplification, Sheet};
 pub use settings::{
     Creases, LineBoil, LineColor, LineFog, LineResponse, LineWeight, MapJumps, ObjectEdges,
     Outlines, Silhouettes,
@@ -115,8 +115,8 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "draw/surface.wgsl");
     load_shader_library!(app, "find/hidden.wgsl");
     load_shader_library!(app, "link/budget.wgsl");
-    load_shader_library!(app, "modifiers/focus.wgsl");
-    load_shader_library!(app, "modifiers/abstraction.wgsl");
+    load_shader_library!(app, "modifiers/fade.wgsl");
+    load_shader_library!(app, "modifiers/simplification.wgsl");
     load_shader_library!(app, "modifiers/layer_lines.wgsl");
     load_shader_library!(app, "modifiers/owner_plane.wgsl");
     load_shader_library!(app, "settings/fog.wgsl");

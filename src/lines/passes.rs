@@ -20,7 +20,7 @@ use super::{
     key::LineKey,
     memory::{MemoryKey, MemoryPipeline},
     pipelines::{LinePass, LineShaders, SearchPass},
-    request::{LineRequest, Search},
+    request::LineRequest,
     tiles::TileList,
 };
 
@@ -84,22 +84,21 @@ pub(crate) struct CellPasses {
 impl CellPasses {
     /// `continues`: lines continue along weak edges.
     fn new(
-        key: &LineKey,
+        key: LineKey,
         continues: bool,
         compute: &mut impl FnMut(SearchPass) -> CachedComputePipelineId,
     ) -> Self {
+        let find = compute(SearchPass::Cells(key.for_find()));
+        let link = continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last })));
+        let mut with = |flag, pass| key.contains(flag).then(|| compute(pass));
         Self {
-            find: compute(SearchPass::Cells(key.for_find())),
-            link: continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
-            join: key.ledges.then(|| compute(SearchPass::Join)),
-            persist: (key.persists).then(|| compute(SearchPass::Persist(key.for_persist()))),
-            bridge: key.bridged.then(|| compute(SearchPass::Bridge)),
-            settle: key
-                .settles()
-                .then(|| compute(SearchPass::Settle(key.for_settle()))),
-            ends: key
-                .overshoots
-                .then(|| compute(SearchPass::Ends(key.for_ends()))),
+            find,
+            link,
+            join: with(LineKey::LEDGES, SearchPass::Join),
+            persist: with(LineKey::PERSISTS, SearchPass::Persist(key.for_persist())),
+            bridge: with(LineKey::BRIDGED, SearchPass::Bridge),
+            settle: with(LineKey::COMPLETED, SearchPass::Settle(key.for_settle())),
+            ends: with(LineKey::OVERSHOOTS, SearchPass::Ends(key.for_ends())),
         }
     }
 
@@ -160,28 +159,30 @@ impl LinePipelines<'_> {
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
         let has_compute = self.has_compute(request);
         let key = LineKey::new(request, !has_compute);
+        let has = |flag| key.contains(flag);
         let computes = &mut self.computes;
         let mut render = |pass| {
             let renders = &mut self.renders;
             renders.specialize(cache, &self.shaders, (pass, pass.part(key)))
         };
         let resolve = (request.samples > 1).then(|| {
-            let key = ResolveKey::new(&key, request.samples);
+            let key = ResolveKey::new(key, request.samples);
             (key, self.resolves.specialize(cache, &self.resolve, key))
         });
-        let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
-        let cracks = key.has_cracks().then(|| CrackPasses {
+        let faithful = LineKey::FAITHFUL_SILHOUETTES | LineKey::FAITHFUL_CREASES;
+        let faithful = key.intersects(faithful).then(|| render(LinePass::Faithful));
+        let cracks = has(LineKey::CRACKS).then(|| CrackPasses {
             find: if has_compute {
                 let mut compute = |pass| computes.specialize(cache, &self.shaders, pass);
-                FindPass::Cells(CellPasses::new(&key, request.steps > 0, &mut compute))
+                FindPass::Cells(CellPasses::new(key, request.steps > 0, &mut compute))
             } else {
                 FindPass::Pixels(render(LinePass::Find))
             },
-            columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
+            columns: has(LineKey::COLUMNS).then(|| render(LinePass::Columns)),
             draw: render(LinePass::Draw),
-            strokes: key.overshoots.then(|| render(LinePass::Strokes)),
+            strokes: has(LineKey::OVERSHOOTS).then(|| render(LinePass::Strokes)),
         });
-        let searches = has_compute && (key.has_cracks() || key.jumps);
+        let searches = has_compute && key.intersects(LineKey::CRACKS | LineKey::JUMPS);
         let search = searches.then(|| {
             let passes = [SearchPass::Walk(key.for_walk()), SearchPass::Tiles];
             passes.map(|pass| computes.specialize(cache, &self.shaders, pass))
@@ -196,7 +197,7 @@ impl LinePipelines<'_> {
         };
         if request.memory.is_some() && passes.has_ink() {
             let key = MemoryKey {
-                oblique: key.oblique,
+                oblique: key.contains(LineKey::OBLIQUE),
                 tiled: passes.are_tiles_complete(),
             };
             let memory = self.memories.specialize(cache, &self.memory, key);

@@ -102,18 +102,18 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
         };
         let (layout, shader_defs) = match pass {
-            SearchPass::Walk(key) => (key.walk_layout(), key.walk_defs()),
+            SearchPass::Walk(key) => (key.walk_layout(), key.defs()),
             SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
-            SearchPass::Cells(key) => (key.cells_layout(), key.find_defs()),
+            SearchPass::Cells(key) => (key.cells_layout(), key.defs()),
             SearchPass::Link { last } => {
                 let defs = last.then(|| "LAST".into());
                 (LineKey::link_layout(), defs.into_iter().collect())
             }
             SearchPass::Join => (LineKey::link_layout(), vec![]),
-            SearchPass::Persist(key) => (key.persist_layout(), key.persist_defs()),
-            SearchPass::Ends(key) => (LineKey::ends_layout(), key.ends_defs()),
+            SearchPass::Persist(key) => (key.persist_layout(), key.defs()),
+            SearchPass::Ends(key) => (LineKey::ends_layout(), key.defs()),
             SearchPass::Bridge => (LineKey::bridge_layout(), vec![]),
-            SearchPass::Settle(key) => (key.settle_layout(), key.settle_defs()),
+            SearchPass::Settle(key) => (key.settle_layout(), key.defs()),
         };
         ComputePipelineDescriptor {
             label: Some(label.into()),
@@ -153,12 +153,12 @@ impl SpecializedRenderPipeline for LineShaders {
     type Key = (LinePass, LineKey);
 
     fn specialize(&self, (pass, key): (LinePass, LineKey)) -> RenderPipelineDescriptor {
-        let (shader, layout, defs) = match pass {
-            LinePass::Find => (&self.find, key.find_layout(), key.find_defs()),
-            LinePass::Columns => (&self.columns, key.columns_layout(), key.draw_defs()),
-            LinePass::Faithful => (&self.faithful, key.faithful_layout(), key.faithful_defs()),
-            LinePass::Draw => (&self.draw, key.draw_layout(), key.draw_defs()),
-            LinePass::Strokes => (&self.strokes, key.strokes_layout(), key.strokes_defs()),
+        let (shader, layout) = match pass {
+            LinePass::Find => (&self.find, key.find_layout()),
+            LinePass::Columns => (&self.columns, key.columns_layout()),
+            LinePass::Faithful => (&self.faithful, key.faithful_layout()),
+            LinePass::Draw => (&self.draw, key.draw_layout()),
+            LinePass::Strokes => (&self.strokes, key.strokes_layout()),
         };
         let (label, entry, targets) = match pass {
             LinePass::Find => ("comics_find_lines", "find", CRACKS),
@@ -167,6 +167,7 @@ impl SpecializedRenderPipeline for LineShaders {
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
             LinePass::Strokes => ("comics_line_strokes", "stroke", INK),
         };
+        let defs = key.defs();
         // The pass that draws ink has this target too; the faithful equations do not write it.
         let owners = Some(ColorTargetState {
             write_mask: match pass {
@@ -176,8 +177,8 @@ impl SpecializedRenderPipeline for LineShaders {
             ..target(OWNER_FORMAT, None)
         });
         let inks = !matches!(pass, LinePass::Find | LinePass::Columns);
-        let count = if inks && key.surface { 2 } else { 1 };
-        let tiled = !key.by_fragments && pass != LinePass::Faithful;
+        let count = 1 + usize::from(inks && key.contains(LineKey::SURFACE));
+        let tiled = key.contains(LineKey::BLOCKS);
         let (mut vertex, mut primitive) = vertices(tiled, &self.fullscreen, &self.tile);
         if pass == LinePass::Strokes {
             vertex = VertexState {

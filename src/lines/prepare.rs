@@ -21,6 +21,7 @@ use super::{
     cracks::{CrackBuffers, CrackStore, ViewCracks},
     draw::StrokeList,
     find::Resolved,
+    key::LineKey,
     memory::{LineLives, LineMemory},
     passes::{FindPass, LinePasses},
     request::{LinePassUniform, LineRequest, blocks},
@@ -124,7 +125,7 @@ fn cracks(
                 CrackStore::Buffers(buffers) => Some(buffers),
                 CrackStore::Texture(_) => None,
             });
-            let bends = passes.key.smooth;
+            let bends = passes.key.contains(LineKey::SMOOTH);
             CrackStore::Buffers(CrackBuffers::new(before, device, rect, bends))
         }
         FindPass::Pixels(_) => CrackStore::Texture(drawn("comics_cracks", CRACK_FORMAT)),
@@ -164,8 +165,8 @@ impl ViewLines {
         };
         let ink = passes.has_ink();
         self.ink = ink.then(|| drawn("comics_line_ink", INK_FORMAT));
-        self.owners =
-            (ink && passes.key.surface).then(|| drawn("comics_line_owners", OWNER_FORMAT));
+        self.owners = (ink && passes.key.contains(LineKey::SURFACE))
+            .then(|| drawn("comics_line_owners", OWNER_FORMAT));
         let before = self.memory.take();
         let kept = self.found.load(Ordering::Relaxed);
         let memory = request.memory.filter(|_| passes.memory.is_some());
@@ -174,7 +175,10 @@ impl ViewLines {
             LineMemory::next(before, kept, device, request)
         });
         let before = self.lives.take();
-        self.lives = (passes.key.persists).then(|| LineLives::next(before, kept, device, request));
+        self.lives = passes
+            .key
+            .contains(LineKey::PERSISTS)
+            .then(|| LineLives::next(before, kept, device, request));
         self.found = AtomicBool::new(false);
         let is_new = self.memory.as_ref().is_none_or(|memory| memory.is_new);
         self.uniform.set(request.uniform(is_new));

@@ -40,9 +40,9 @@ use bevy::{
 
 use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
-    abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
     object_ids::ObjectIds,
+    simplification::{BY_DISTANCE, ObjectSimplification, dials},
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
@@ -108,7 +108,7 @@ struct ObjectBounds {
     meshes: EntityHashMap<(Entity, Bounds)>,
     /// The meshes of each object, and the box around them.
     objects: EntityHashMap<(Vec<Entity>, Bounds)>,
-    /// The dials of abstraction of the objects that have their own.
+    /// The dials of the objects that have a simplification of their own.
     dials: EntityHashMap<Vec2>,
     /// Whether some view asked in the last frame.
     asked: bool,
@@ -187,7 +187,7 @@ fn extract_bounds(
         Extract<RemovedComponents<Aabb>>,
     ),
     (dialled, children): (
-        Extract<Query<(Entity, &ObjectAbstraction)>>,
+        Extract<Query<(Entity, &ObjectSimplification)>>,
         Extract<Query<&Children>>,
     ),
     mut bounds: ResMut<ObjectBounds>,

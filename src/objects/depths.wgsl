@@ -23,7 +23,7 @@ struct Bounds {
     half: vec3<f32>,
     // 0: it had the id before; 1: the id is new; 2: several objects have it, so there is no place.
     state: u32,
-    // Its abstraction: a factor of that by distance, and what is added.
+    // Its simplification: a factor of that by distance, and what is added.
     dial: vec2<f32>,
     unused_pair: vec2<f32>,
 }
@@ -43,8 +43,8 @@ struct Eye {
 
 @group(0) @binding(0) var<uniform> eye: Eye;
 @group(0) @binding(1) var<storage, read> objects: array<Bounds>;
-// By id: D of the centre, plus 1; how much of each pixel follows it; and the dial of abstraction.
-// 0: unknown.
+// By id: D of the centre, plus 1; how much of each pixel follows it; and the dial of its
+// simplification. 0: unknown.
 @group(0) @binding(2) var<storage, read_write> depths: array<vec4<f32>>;
 
 // Raw depth at a distance along the view's axis; 1 behind the eye.

@@ -3,8 +3,6 @@
 //! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
-mod abstraction;
-#[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
 mod depth_test;
@@ -43,6 +41,8 @@ mod plugin;
 mod sections;
 #[cfg(feature = "objects")]
 mod shading;
+#[cfg(feature = "objects")]
+mod simplification;
 mod table;
 #[cfg(feature = "objects")]
 mod transparent;
@@ -52,8 +52,6 @@ mod widths;
 mod changes;
 #[cfg(feature = "objects")]
 mod components;
-#[cfg(feature = "objects")]
-pub use abstraction::ObjectAbstraction;
 #[cfg(feature = "objects")]
 pub use anchors::PatternAnchor;
 #[cfg(feature = "objects")]
@@ -76,6 +74,8 @@ pub use object_ids::ObjectIds;
 pub use phase::ObjectWork;
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
+#[cfg(feature = "objects")]
+pub use simplification::ObjectSimplification;
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
@@ -238,7 +238,7 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
                 .register_type::<PatternAnchor>()
-                .register_type::<ObjectAbstraction>()
+                .register_type::<ObjectSimplification>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()
                 .add_systems(

@@ -93,7 +93,7 @@ fn object_depth(id: u32) -> vec2<f32> {
     return vec2(place.x - 1.0, select(0.0, place.y, place.x > 0.0));
 }
 
-// The abstraction of the object with this id: a factor of that by distance, and what is added.
+// The simplification of the object with this id: a factor of that by distance, and what is added.
 fn object_dial(id: u32) -> vec2<f32> {
     let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
     return select(vec2(1.0, 0.0), place.zw, place.x > 0.0);

@@ -20,7 +20,7 @@ use crate::{
 #[cfg(all(feature = "toon", feature = "objects"))]
 use crate::{
     OutlineStyle, ToonLight,
-    objects::{MeshSections, ObjectAbstraction},
+    objects::{MeshSections, ObjectSimplification},
     toon::{
         DetailAxis, ProxyShape, Ramp, RampDetail, RampStop, Rim, RimWidth, ShadingProxy,
         StylizedHighlight,

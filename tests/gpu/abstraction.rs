@@ -1,6 +1,6 @@
 //! The dial of abstraction in whole views.
 
-use bevy_comics::objects::ObjectAbstraction;
+use bevy_comics::objects::ObjectSimplification;
 use bevy_comics_testkit::work::along_cracks;
 
 use crate::prelude::*;
@@ -171,7 +171,7 @@ fn inks(small: &mut Small, step: f32, exponent: f32, levels: Option<[f32; 2]>) -
     set_style(small, style.clone());
     let without = ink(small);
     for (front, level) in fronts.into_iter().zip(levels.into_iter().flatten()) {
-        let own = ObjectAbstraction::fixed(level);
+        let own = ObjectSimplification::fixed(level);
         small.world().entity_mut(front).insert(own);
     }
     let abstraction = Abstraction {
@@ -214,7 +214,7 @@ fn far_edges_must_be_stronger() {
 /// Objects with an abstraction of their own have its colours, at every distance.
 #[test]
 fn objects_have_colors_of_their_own_level() {
-    let offset = |offset| ObjectAbstraction {
+    let offset = |offset| ObjectSimplification {
         offset,
         ..default()
     };
@@ -228,7 +228,7 @@ fn objects_have_colors_of_their_own_level() {
         };
         let fronts = cards(&mut small, [1.001, 100.9], 0.0001);
         let plain = spread(seen(&mut small)[0]);
-        let levels = |small: &mut Small, [near, far]: [ObjectAbstraction; 2]| {
+        let levels = |small: &mut Small, [near, far]: [ObjectSimplification; 2]| {
             small.world().entity_mut(fronts[0]).insert(near);
             small.world().entity_mut(fronts[1]).insert(far);
             seen(small).map(spread)
@@ -240,7 +240,7 @@ fn objects_have_colors_of_their_own_level() {
             })
         };
         set_style(&mut small, style(Granularity::Object));
-        let fixed = ObjectAbstraction::fixed;
+        let fixed = ObjectSimplification::fixed;
         for reversed in [[fixed(1.0), fixed(0.0)], [offset(1.0), offset(-1.0)]] {
             let found = levels(&mut small, reversed);
             let right = found[0] <= 1 && found[1].abs_diff(plain) <= 1;
@@ -255,7 +255,7 @@ fn objects_have_colors_of_their_own_level() {
         // Inherited from a parent, except for those with their own.
         for front in fronts {
             let mut front = small.world().entity_mut(front);
-            front.remove::<ObjectAbstraction>();
+            front.remove::<ObjectSimplification>();
         }
         let parent = (fixed(1.0), Transform::IDENTITY, Visibility::default());
         let parent = small.world().spawn(parent).id();

@@ -1,6 +1,6 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
-use bevy_comics::objects::ObjectAbstraction;
+use bevy_comics::objects::ObjectSimplification;
 
 use crate::{
     prelude::*,
@@ -151,7 +151,7 @@ fn creases_fade_with_abstraction() {
     let cube = cube(&mut small, Msaa::Off, &style);
     for (level, left) in [(None, 0.6), (Some(1.0), 0.2), (Some(0.0), 1.0)] {
         if let Some(level) = level {
-            let own = ObjectAbstraction::fixed(level);
+            let own = ObjectSimplification::fixed(level);
             small.world().entity_mut(cube).insert(own);
         }
         let picture = small.settle().picture();

@@ -8,12 +8,12 @@ fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+fn files(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder of the crate") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
-            rust_files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            files(&path, extension, found);
+        } else if path.extension().is_some_and(|e| e == extension) {
             found.push(path);
         }
     }
@@ -98,12 +98,12 @@ fn exports() -> BTreeMap<String, String> {
 
 /// Module -> the modules that it imports, through the crate's root too.
 fn imports() -> BTreeMap<String, BTreeSet<String>> {
-    let mut files = Vec::new();
-    rust_files(&source(), &mut files);
-    let rooms: BTreeSet<String> = files.iter().map(|path| room(path)).collect();
+    let mut sources = Vec::new();
+    files(&source(), "rs", &mut sources);
+    let rooms: BTreeSet<String> = sources.iter().map(|path| room(path)).collect();
     let exports = exports();
     let mut graph: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for path in &files {
+    for path in &sources {
         let own = room(path);
         // The root and the plugin put everything together.
         if ["lib", "plugin"].contains(&own.as_str()) || path.ends_with("tests.rs") {
@@ -156,6 +156,26 @@ fn no_modules_import_each_other_in_a_circle() {
         "the check sees no imports: {graph:#?}"
     );
     assert_eq!(circle(&graph), None, "{graph:#?}");
+}
+
+/// Shaders ask for the definitions of their own effect alone, and those of services for none.
+#[test]
+fn shaders_know_no_other_effect() {
+    let mut shaders = Vec::new();
+    files(&source(), "wgsl", &mut shaders);
+    let mut asked = 0;
+    for path in shaders {
+        let folder = path.parent().and_then(Path::file_name).expect("a folder");
+        let own = folder.to_string_lossy().to_uppercase();
+        let text = fs::read_to_string(&path).expect("a shader");
+        let words = text.split(|c: char| !c.is_ascii_uppercase() && c != '_');
+        for name in words.filter_map(|word| Some(word.split_once("EFFECT_")?.1)) {
+            asked += 1;
+            let is_own = room(&path) == "effects" && name.starts_with(&own);
+            assert!(is_own, "{} asks for {name}", path.display());
+        }
+    }
+    assert!(asked > 0, "the check sees no definitions");
 }
 
 /// The test binary does not fail for a name that matches no test: `scripts/gpu` would test less

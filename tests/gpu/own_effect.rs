@@ -138,7 +138,11 @@ pub fn files() -> Vec<File> {
 #[ignore = "long: compiles and links a crate"]
 fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
     let shader = outside::run("own_effect");
-    for part in ["#ifdef TINT\n", "#ifdef VIEW_TINT\n", "my_game::tint"] {
+    for part in [
+        "#ifdef EFFECT_TINT\n",
+        "#ifdef VIEW_EFFECT_TINT\n",
+        "my_game::tint",
+    ] {
         assert!(shader.contains(part), "{part:?} is not in\n{shader}");
     }
 }

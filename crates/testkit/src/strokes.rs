@@ -6,8 +6,8 @@ use bevy::math::DVec3;
 use bevy_comics::{Hatching, effects::HatchingMarks};
 
 use crate::reference::{
-    abstraction::split_bands,
     hatching::{Hatch, Surface},
+    tone_bands::split_bands,
 };
 
 /// A part of a wall that is turned by an angle about the vertical axis, in an orthographic view

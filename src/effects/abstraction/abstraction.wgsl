@@ -34,7 +34,7 @@ fn dialled(s: Abstraction, d: f32, dial: vec2<f32>) -> f32 {
 fn abstraction_of(s: Abstraction, p: Pixel) -> f32 {
     var d = select(p.depth.x, p.depth.y, view.flip != 0u);
     var dial = vec2(1.0, 0.0);
-#ifdef ABSTRACTION_OBJECTS
+#ifdef EFFECT_ABSTRACTION_OBJECTS
 #ifdef OBJECT_DEPTHS
     let object = texel_object(depth_pixel(vec2<i32>(floor(p.position))), 0).x;
     let place = object_depth(object);

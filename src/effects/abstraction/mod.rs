@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::Granularity;
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants},
-    lines::{LineAbstraction, LineModifiers},
+    lines::{LineModifiers, LineSimplification},
     settings::FieldRange,
 };
 
@@ -34,8 +34,8 @@ pub struct Abstraction {
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
     /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes
-    /// and lines, or as its [`ObjectAbstraction`](crate::objects::ObjectAbstraction) says. Default:
-    /// [`Granularity::Object`]. Without compute shaders, lines follow pixels.
+    /// and lines, or as its [`ObjectSimplification`](crate::objects::ObjectSimplification) says.
+    /// Default: [`Granularity::Object`]. Without compute shaders, lines follow pixels.
     pub granularity: Granularity,
     /// How often the bands of [`ToneBands`](crate::ToneBands) split from full abstraction, where
     /// there are `levels` of them, to none, with the corrected equations: at 1, there are twice as
@@ -113,8 +113,16 @@ impl Effect for Abstraction {
     }
 
     fn line_modifiers(&self, _: &EffectContext) -> LineModifiers {
+        let changes = self.line_threshold > 1.0 || self.crease_opacity < 1.0;
         LineModifiers {
-            abstraction: self.line_abstraction(),
+            simplification: changes.then(|| LineSimplification {
+                at_near: self.at_near,
+                at_far: self.at_far,
+                exponent: self.exponent,
+                threshold: self.line_threshold,
+                crease_opacity: self.crease_opacity,
+                by_objects: self.granularity == Granularity::Object,
+            }),
             ..LineModifiers::default()
         }
     }
@@ -132,20 +140,6 @@ impl Effect for Abstraction {
             spacing: self.spacing.log2(),
             saturation: self.saturation,
         }
-    }
-}
-
-impl Abstraction {
-    fn line_abstraction(&self) -> Option<LineAbstraction> {
-        let changes = self.line_threshold > 1.0 || self.crease_opacity < 1.0;
-        changes.then(|| LineAbstraction {
-            at_near: self.at_near,
-            at_far: self.at_far,
-            exponent: self.exponent,
-            threshold: self.line_threshold,
-            crease_opacity: self.crease_opacity,
-            by_objects: self.granularity == Granularity::Object,
-        })
     }
 }
 

@@ -4,7 +4,7 @@
 
 #import bevy_comics::effect::color::{largest, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
-#ifdef BLACK_FLATS_STEEP
+#ifdef EFFECT_BLACK_FLATS_STEEP
 #import bevy_comics::depth::view::{depth_frame, map_slope}
 #endif
 
@@ -52,7 +52,7 @@ fn fill(s: BlackFlats, picture: vec4<f32>, coverage: f32) -> vec3<f32> {
 fn black_flats(s: BlackFlats, p: Pixel) -> Pixel {
     var out = p;
     var flats = dark_area(s, p.original, p.depth.y);
-#ifdef BLACK_FLATS_STEEP
+#ifdef EFFECT_BLACK_FLATS_STEEP
     flats = max(flats, steep_area(s, map_slope(depth_frame(), vec2<i32>(p.position))));
 #endif
     out.color = fill(s, vec4(p.color, p.alpha), flats);

@@ -31,16 +31,16 @@ struct ColorHarmony {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn mode_of(s: ColorHarmony) -> u32 {
-#ifdef COLOR_HARMONY_MODE
-    return #{COLOR_HARMONY_MODE}u;
+#ifdef EFFECT_COLOR_HARMONY_MODE
+    return #{EFFECT_COLOR_HARMONY_MODE}u;
 #else
     return s.mode;
 #endif
 }
 
 fn is_faithful(s: ColorHarmony) -> bool {
-#ifdef COLOR_HARMONY_FAITHFUL
-    let compiled = #{COLOR_HARMONY_FAITHFUL}u;
+#ifdef EFFECT_COLOR_HARMONY_FAITHFUL
+    let compiled = #{EFFECT_COLOR_HARMONY_FAITHFUL}u;
     return compiled != 0u;
 #else
     return s.faithful != 0u;
@@ -48,8 +48,8 @@ fn is_faithful(s: ColorHarmony) -> bool {
 }
 
 fn is_quadratic(s: ColorHarmony) -> bool {
-#ifdef COLOR_HARMONY_QUADRATIC
-    let compiled = #{COLOR_HARMONY_QUADRATIC}u;
+#ifdef EFFECT_COLOR_HARMONY_QUADRATIC
+    let compiled = #{EFFECT_COLOR_HARMONY_QUADRATIC}u;
     return compiled != 0u;
 #else
     return s.quadratic != 0u;

@@ -27,16 +27,16 @@ struct Colorization {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn mode_of(s: Colorization) -> u32 {
-#ifdef COLORIZATION_MODE
-    return #{COLORIZATION_MODE}u;
+#ifdef EFFECT_COLORIZATION_MODE
+    return #{EFFECT_COLORIZATION_MODE}u;
 #else
     return s.mode;
 #endif
 }
 
 fn is_faithful(s: Colorization) -> bool {
-#ifdef COLORIZATION_FAITHFUL
-    let compiled = #{COLORIZATION_FAITHFUL}u;
+#ifdef EFFECT_COLORIZATION_FAITHFUL
+    let compiled = #{EFFECT_COLORIZATION_FAITHFUL}u;
     return compiled != 0u;
 #else
     return s.faithful != 0u;

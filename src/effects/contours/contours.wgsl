@@ -162,16 +162,16 @@ fn scaled_response(operator_kind: u32, s: Steps) -> f32 {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn operator_of(s: Contours) -> u32 {
-#ifdef CONTOURS_OPERATOR
-    return #{CONTOURS_OPERATOR}u;
+#ifdef EFFECT_CONTOURS_OPERATOR
+    return #{EFFECT_CONTOURS_OPERATOR}u;
 #else
     return s.operator_kind;
 #endif
 }
 
 fn is_faithful(s: Contours) -> bool {
-#ifdef CONTOURS_FAITHFUL
-    let compiled = #{CONTOURS_FAITHFUL}u;
+#ifdef EFFECT_CONTOURS_FAITHFUL
+    let compiled = #{EFFECT_CONTOURS_FAITHFUL}u;
     return compiled != 0u;
 #else
     return s.faithful != 0u;
@@ -250,7 +250,7 @@ fn texel_slope(win: Window, distance: vec2<i32>) -> vec2<f32> {
 // two pixels; without them, thin objects would be missed.
 fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
     var found = vec2(0.0);
-#ifdef CONTOURS_SINGLE_RING
+#ifdef EFFECT_CONTOURS_SINGLE_RING
     return tap_line(s, frame, pixel, reach, sample);
 #endif
     for (var r = reach; r > 0; r -= 2) {
@@ -276,14 +276,14 @@ fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #else
     let inner = ring_line(s, frame, pixel, whole, 0);
     found = inner;
-#ifndef CONTOURS_WHOLE
+#ifndef EFFECT_CONTOURS_WHOLE
     if part > 0.0 {
         let outer = ring_line(s, frame, pixel, whole + 1, 0);
         found = vec2(mix(inner.x, max(inner.x, outer.x), part), max(inner.y, outer.y));
     }
 #endif
 #endif
-#ifdef CONTOURS_STEADY
+#ifdef EFFECT_CONTOURS_STEADY
     return vec2(found.x, 0.0);
 #endif
     return vec2(found.x, depth_map(frame, found.y).x);

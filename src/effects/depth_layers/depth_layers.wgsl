@@ -40,8 +40,8 @@ struct DepthLayers {
 
 // Whether some layer has bands. A constant where the pass defines it: see has() in map.wgsl.
 fn has_bands() -> bool {
-#ifdef DEPTH_LAYERS_BANDS
-    let compiled = #{DEPTH_LAYERS_BANDS}u;
+#ifdef EFFECT_DEPTH_LAYERS_BANDS
+    let compiled = #{EFFECT_DEPTH_LAYERS_BANDS}u;
     return compiled != 0u;
 #else
     return true;
@@ -89,7 +89,7 @@ fn borders_of(s: DepthLayers) -> vec2<f32> {
 
 // D by which a sample of a pixel is in a layer: that of its object, if this is treated as a whole.
 fn layer_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
-#ifdef DEPTH_LAYERS_OBJECTS
+#ifdef EFFECT_DEPTH_LAYERS_OBJECTS
 #ifdef OBJECT_DEPTHS
     return whole_depth(pixel, sample, d);
 #else

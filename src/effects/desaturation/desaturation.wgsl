@@ -20,16 +20,16 @@ struct Desaturation {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn curve_of(s: Desaturation) -> u32 {
-#ifdef DESATURATION_CURVE
-    return #{DESATURATION_CURVE}u;
+#ifdef EFFECT_DESATURATION_CURVE
+    return #{EFFECT_DESATURATION_CURVE}u;
 #else
     return s.curve;
 #endif
 }
 
 fn is_faithful(s: Desaturation) -> bool {
-#ifdef DESATURATION_FAITHFUL
-    let compiled = #{DESATURATION_FAITHFUL}u;
+#ifdef EFFECT_DESATURATION_FAITHFUL
+    let compiled = #{EFFECT_DESATURATION_FAITHFUL}u;
     return compiled != 0u;
 #else
     return s.faithful != 0u;

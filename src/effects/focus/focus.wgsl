@@ -48,8 +48,8 @@ struct Focus {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn style_of(s: Focus) -> u32 {
-#ifdef FOCUS_STYLE
-    let compiled = #{FOCUS_STYLE}u;
+#ifdef EFFECT_FOCUS_STYLE
+    let compiled = #{EFFECT_FOCUS_STYLE}u;
     return compiled;
 #else
     return 0u;
@@ -58,8 +58,8 @@ fn style_of(s: Focus) -> u32 {
 
 // Whether the view is orthographic: a constant where the pass defines it.
 fn is_parallel(s: Focus) -> bool {
-#ifdef FOCUS_PARALLEL
-    let compiled = #{FOCUS_PARALLEL}u;
+#ifdef EFFECT_FOCUS_PARALLEL
+    let compiled = #{EFFECT_FOCUS_PARALLEL}u;
     return compiled == 1u;
 #else
     return s.reference > 0.0;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
-    lines::{LineFocus, LineModifiers},
+    lines::{LineFade, LineModifiers},
     settings::FieldRange,
 };
 
@@ -161,7 +161,12 @@ impl Effect for Focus {
 
     fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
         LineModifiers {
-            focus: self.line_focus(view),
+            fade: (self.style == FocusStyle::Lines).then(|| LineFade {
+                distance: self.focus_distance(view),
+                clear: self.clear,
+                ramp: self.ramp,
+                amount: self.whole(),
+            }),
             ..LineModifiers::default()
         }
     }
@@ -207,17 +212,6 @@ impl Focus {
     /// How much of the dots is seen, and of the lines lost, where all is out of focus.
     fn whole(&self) -> f32 {
         (self.radius / 6.0).min(1.0)
-    }
-}
-
-impl Focus {
-    fn line_focus(&self, view: &EffectContext) -> Option<LineFocus> {
-        (self.style == FocusStyle::Lines).then(|| LineFocus {
-            distance: self.focus_distance(view),
-            clear: self.clear,
-            ramp: self.ramp,
-            amount: self.whole(),
-        })
     }
 }
 

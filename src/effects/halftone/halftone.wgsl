@@ -10,10 +10,10 @@
     gained, grain_covers, line, paler, spread_tone, tinted,
 }
 #import bevy_comics::effect::sheet::sheet_height
-#ifdef HALFTONE_CELLS
+#ifdef EFFECT_HALFTONE_CELLS
 #import bevy_comics::effect::picture::picture_at
 #endif
-#ifdef HALFTONE_FOLLOWS
+#ifdef EFFECT_HALFTONE_FOLLOWS
 #import bevy_comics::depth::view::view
 #import bevy_comics::effect::similarity::{Similarity, similarity_of}
 #endif
@@ -89,16 +89,16 @@ struct Screen {
 
 // The mode: compiled in by the fused pass, else that of the settings.
 fn mode_of(s: Halftone) -> u32 {
-#ifdef HALFTONE_MODE
-    return #{HALFTONE_MODE}u;
+#ifdef EFFECT_HALFTONE_MODE
+    return #{EFFECT_HALFTONE_MODE}u;
 #else
     return s.mode;
 #endif
 }
 
 fn shape_of(s: Halftone) -> u32 {
-#ifdef HALFTONE_SHAPE
-    return #{HALFTONE_SHAPE}u;
+#ifdef EFFECT_HALFTONE_SHAPE
+    return #{EFFECT_HALFTONE_SHAPE}u;
 #else
     return s.shape;
 #endif
@@ -107,8 +107,8 @@ fn shape_of(s: Halftone) -> u32 {
 // Whether tones, levels or screens depend on more than the colour: compiled in, see `adjusts` in
 // mod.rs.
 fn adjusts(s: Halftone) -> bool {
-#ifdef HALFTONE_ADJUSTED
-    let adjusted = #{HALFTONE_ADJUSTED}u;
+#ifdef EFFECT_HALFTONE_ADJUSTED
+    let adjusted = #{EFFECT_HALFTONE_ADJUSTED}u;
     return adjusted == 1u;
 #else
     return true;
@@ -117,8 +117,8 @@ fn adjusts(s: Halftone) -> bool {
 
 // Whether ink runs into the valleys of a sheet.
 fn spreads(s: Halftone) -> bool {
-#ifdef HALFTONE_SPREADS
-    let compiled = #{HALFTONE_SPREADS}u;
+#ifdef EFFECT_HALFTONE_SPREADS
+    let compiled = #{EFFECT_HALFTONE_SPREADS}u;
     return compiled == 1u;
 #else
     return s.spread > 0.0;
@@ -224,7 +224,7 @@ fn tone_on_sheet(s: Halftone, on: Screen, tone: f32, cell_size: f32) -> f32 {
 // Cosine and sine of the angle of a plate, divided by its period.
 fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
     let own = vec2(s.cosines[plate], s.sines[plate]);
-#ifdef HALFTONE_FOLLOWS
+#ifdef EFFECT_HALFTONE_FOLLOWS
     let t = on.turn / on.size;
     return vec2(own.x * t.x - own.y * t.y, own.x * t.y + own.y * t.x);
 #else
@@ -282,7 +282,7 @@ fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
         * (1.0 - k.z * s.yellow.rgb) * (1.0 - k.w * s.black.rgb);
 }
 
-#ifdef HALFTONE_CELLS
+#ifdef EFFECT_HALFTONE_CELLS
 // The mean colour of four places in the cell of a plate that a pixel lies in; `own` where
 // the background shows through.
 fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
@@ -302,7 +302,7 @@ fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plat
 
 // The tone that a plate prints at a pixel, whose own one is `tone`.
 fn tone_read(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, plate: i32, tone: f32) -> f32 {
-#ifdef HALFTONE_CELLS
+#ifdef EFFECT_HALFTONE_CELLS
     return plate_tones(s, cell_color(s, on, p.position, color, plate))[plate];
 #else
     return tone;
@@ -332,7 +332,7 @@ fn covers(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, tone
     return k;
 }
 
-#ifdef HALFTONE_FOLLOWS
+#ifdef EFFECT_HALFTONE_FOLLOWS
 // Where the object at a pixel is on the page. Of size 0 if screens do not follow it.
 fn followed(s: Halftone, p: Pixel) -> Similarity {
     var found: Similarity;
@@ -380,7 +380,7 @@ fn halftone(s: Halftone, p: Pixel) -> Pixel {
     let color = p.color / max(p.alpha, 1e-3);
     let tones = plate_tones(s, color);
     let amount = screen_amount(s, color, p.depth.x) * p.prints.y;
-#ifdef HALFTONE_FOLLOWS
+#ifdef EFFECT_HALFTONE_FOLLOWS
     let k = followed_covers(s, p, color, amount, tones);
 #else
     let k = covers(s, page_screen(s, height_under(s, p)), p, color, amount, tones);

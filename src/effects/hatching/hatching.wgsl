@@ -5,10 +5,10 @@
 #import bevy_comics::effect::color::lightness
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::strokes::{Strokes, Surface, darkness, hatched, page_at, with_strokes}
-#ifdef HATCHING_DOTS
+#ifdef EFFECT_HATCHING_DOTS
 #import bevy_comics::effect::stipple::stippled
 #endif
-#ifdef HATCHING_ON_THINGS
+#ifdef EFFECT_HATCHING_ON_THINGS
 #import bevy_comics::depth::map::is_background
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::raw::raw_depth
@@ -77,8 +77,8 @@ fn strokes_left(simplify_small: f32, neighbours: f32) -> f32 {
     return 1.0 - simplify_small * (1.0 - smoothstep(0.75, 2.0, neighbours));
 }
 
-#ifdef HATCHING_ON_THINGS
-#ifdef HATCHING_CALM
+#ifdef EFFECT_HATCHING_ON_THINGS
+#ifdef EFFECT_HATCHING_CALM
 // Whether the surface at a pixel, in world axes, continues at a neighbour.
 fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
     let corner = view.viewport.xy;
@@ -143,7 +143,7 @@ fn anchored(on: Surface, pixel: vec2<i32>) -> Surface {
 
 // Coverage by marks of a mean darkness.
 fn marked(s: Strokes, on: Surface, tone: f32) -> f32 {
-#ifdef HATCHING_DOTS
+#ifdef EFFECT_HATCHING_DOTS
     return stippled(s, on, tone);
 #else
     return hatched(s, on, tone);
@@ -153,14 +153,12 @@ fn marked(s: Strokes, on: Surface, tone: f32) -> f32 {
 fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var out = p;
     var s = settings;
-#ifdef ABSTRACTION
     s.strokes.spacing *= p.spacing;
-#endif
     let color = p.color / max(p.alpha, 1e-3);
     var light = lightness(color);
-#ifdef HATCHING_ON_THINGS
+#ifdef EFFECT_HATCHING_ON_THINGS
     let on = seen_surface(s, p);
-#ifdef HATCHING_FACES
+#ifdef EFFECT_HATCHING_FACES
     light = 0.5 + 0.5 * clamp(dot(load_normal(vec2<i32>(floor(p.position))).xyz, s.to_light), -1.0, 1.0);
 #endif
     let is_there = dot(on.normal, on.normal) > 0.0;
@@ -172,9 +170,9 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var tone = 0.0;
     if is_there {
         tone = darkness(s.strokes, light) * mix(s.at_near, s.at_far, p.depth.x) * p.prints.x;
-#ifdef HATCHING_ON_THINGS
+#ifdef EFFECT_HATCHING_ON_THINGS
         cover = marked(s.strokes, anchored(on, vec2<i32>(floor(p.position))), tone);
-#ifdef HATCHING_CALM
+#ifdef EFFECT_HATCHING_CALM
         cover = mix(tone, cover, calmed(s, p, on));
 #endif
 #else

@@ -36,8 +36,8 @@ struct IsoLines {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn field_of(s: IsoLines) -> u32 {
-#ifdef ISO_LINES_FIELD
-    return #{ISO_LINES_FIELD}u;
+#ifdef EFFECT_ISO_LINES_FIELD
+    return #{EFFECT_ISO_LINES_FIELD}u;
 #else
     return s.field;
 #endif

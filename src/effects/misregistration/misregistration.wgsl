@@ -32,7 +32,7 @@ fn tones_at(s: Misregistration, position: vec2<f32>, own: vec3<f32>) -> vec4<f32
 
 // The tone of the black plate, which is read at the pixel itself where it is not moved.
 fn black_at(s: Misregistration, position: vec2<f32>, own: vec3<f32>) -> f32 {
-#ifdef MISREGISTRATION_BLACK_STAYS
+#ifdef EFFECT_MISREGISTRATION_BLACK_STAYS
     return separated(clamp(own, vec3(0.0), vec3(1.0)), s.black_generation).w;
 #else
     return tones_at(s, position, own).w;

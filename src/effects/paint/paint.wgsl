@@ -16,7 +16,7 @@
 }
 #import bevy_comics::effect::picture::{load_picture, picture_at}
 #import bevy_comics::effect::pixel::Pixel
-#ifdef PAINT_FIGURES
+#ifdef EFFECT_PAINT_FIGURES
 #import bevy_comics::objects::load_object
 #endif
 
@@ -47,8 +47,8 @@ fn paint_half_box(s: Paint, p: Pixel) -> f32 {
 
 // Whether the exponent of the deviation is 8, the default: a constant where the pass defines it.
 fn is_eighth(s: Paint) -> bool {
-#ifdef PAINT_EIGHTH
-    let compiled = #{PAINT_EIGHTH}u;
+#ifdef EFFECT_PAINT_EIGHTH
+    let compiled = #{EFFECT_PAINT_EIGHTH}u;
     return compiled == 1u;
 #else
     return s.half_sharpness == 4.0;
@@ -104,7 +104,7 @@ fn is_inside(pixel: vec2<i32>) -> bool {
 
 // The factor for an area with its middle in another pixel: less if that shows another object.
 fn figure_share(own: vec2<i32>, other: vec2<i32>) -> f32 {
-#ifdef PAINT_FIGURES
+#ifdef EFFECT_PAINT_FIGURES
     return select(0.125, 1.0, load_object(own).x == load_object(other).x);
 #else
     return 1.0;
@@ -268,7 +268,7 @@ fn sector_paint(s: Paint, position: vec2<f32>, long: vec2<f32>, short: vec2<f32>
 // The paint at a pixel.
 fn painted(s: Paint, p: Pixel) -> Choice {
     let pixel = vec2<i32>(p.position);
-#ifdef PAINT_ANISOTROPIC
+#ifdef EFFECT_PAINT_ANISOTROPIC
     let radius = paint_radius(s, p.depth.x);
     let edge = direction_of(tensor_at(pixel));
     let stretch = 1.0 + edge.z;
@@ -277,7 +277,7 @@ fn painted(s: Paint, p: Pixel) -> Choice {
     return sector_paint(s, p.position, long, short);
 #else
     let half = paint_half_box(s, p);
-#ifdef PAINT_WHOLE
+#ifdef EFFECT_PAINT_WHOLE
     return whole_box_paint(pixel, half, s.half_sharpness, is_eighth(s));
 #else
     return box_paint(pixel, half, s.half_sharpness, is_eighth(s));

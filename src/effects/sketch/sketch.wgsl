@@ -67,7 +67,7 @@ fn sketch(s: Sketch, p: Pixel) -> Pixel {
 #endif
     let picture = vec4(p.color, p.alpha);
     var drawing = vec4(draw_sketch(s, picture, inked), 1.0);
-#ifdef SKETCH_FADES
+#ifdef EFFECT_SKETCH_FADES
     let below = draw_lines(picture, lines_at(p.position));
     drawing = mix(mix(picture, below, s.lines_below), drawing, s.amount);
 #endif

@@ -37,8 +37,8 @@ struct SpeedLines {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn kind_of(s: SpeedLines) -> u32 {
-#ifdef SPEED_LINES_KIND
-    let compiled = #{SPEED_LINES_KIND}u;
+#ifdef EFFECT_SPEED_LINES_KIND
+    let compiled = #{EFFECT_SPEED_LINES_KIND}u;
     return compiled;
 #else
     return s.kind;
@@ -46,8 +46,8 @@ fn kind_of(s: SpeedLines) -> u32 {
 }
 
 fn is_dry(s: SpeedLines) -> bool {
-#ifdef SPEED_LINES_DRY
-    let compiled = #{SPEED_LINES_DRY}u;
+#ifdef EFFECT_SPEED_LINES_DRY
+    let compiled = #{EFFECT_SPEED_LINES_DRY}u;
     return compiled != 0u;
 #else
     return s.dry_brush > 0.0;

@@ -16,8 +16,8 @@ struct ToneBands {
 
 // A constant where the pass defines it: see has() in map.wgsl.
 fn is_faithful(s: ToneBands) -> bool {
-#ifdef TONE_BANDS_FAITHFUL
-    let compiled = #{TONE_BANDS_FAITHFUL}u;
+#ifdef EFFECT_TONE_BANDS_FAITHFUL
+    let compiled = #{EFFECT_TONE_BANDS_FAITHFUL}u;
     return compiled != 0u;
 #else
     return s.faithful != 0u;
@@ -38,13 +38,13 @@ fn equation_6(c: f32) -> f32 {
 
 // The middle of the band that a lightness `y` falls into, 0 to 1. `change` is the
 // change of the lightness over a pixel. The step between two bands is `softness`
-// pixels wide, and at most one band. `splits`: how often bands have split, see Abstraction.
+// pixels wide, and at most one band. `splits`: how often bands have split.
 fn band_tone(s: ToneBands, y: f32, change: f32, splits: f32) -> f32 {
-#ifdef ABSTRACTION
+    // A constant without an effect that splits them.
+    if splits == 0.0 {
+        return banded(s.levels, y, s.softness * change);
+    }
     return split_bands(s.levels, splits, y, s.softness * change);
-#else
-    return banded(s.levels, y, s.softness * change);
-#endif
 }
 
 // The colour with another luminance and the same chromaticity. If the display cannot

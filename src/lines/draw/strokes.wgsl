@@ -6,7 +6,7 @@
 #import bevy_comics::lines::coverage::segment_coverage
 #import bevy_comics::lines::edge::{encode_ink, ink_of, unpack_width}
 #import bevy_comics::lines::pass::line_pass
-#ifdef TAPER
+#ifdef TAPER_WEIGHT
 #import bevy_comics::lines::overshoot::stroke_width
 #endif
 #ifdef SPREAD
@@ -73,7 +73,7 @@ fn stroke(at: Corner) -> Drawn {
     let b = at.segment.zw;
     var half_width = unpack_width(at.line.x >> 20u);
     var kinds = ink_of(at.line.x);
-#ifdef TAPER
+#ifdef TAPER_WEIGHT
     // In cracks, as tapers are.
     let scale = line_pass.grid.from_viewport.x;
     let length = distance(a, b) * scale;

@@ -5,9 +5,9 @@
 
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::depth_frame
-#ifdef ABSTRACT_LINES
-#import bevy_comics::lines::abstraction::abstract_response
+#ifdef SIMPLIFIED_LINES
 #import bevy_comics::lines::pass::line_pass
+#import bevy_comics::lines::simplification::response_factor
 #endif
 #import bevy_comics::lines::edge::{
     CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
@@ -17,9 +17,6 @@
 #endif
 #import bevy_comics::lines::rows::Borders
 #import bevy_comics::objects::kinds_of
-#ifdef OBJECT_DEPTHS
-#import bevy_comics::objects::{object_depth, object_dial}
-#endif
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
@@ -238,29 +235,15 @@ fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
     return select(vec4(0u), packed, found.kinds != vec4(0u));
 }
 
-#ifdef ABSTRACT_LINES
-// The factor of the response of an edge of a surface: its raw depth, and the id of its object.
-fn response_factor(raw: f32, object: u32) -> f32 {
-    let a = line_pass.abstraction;
-    let d = depth_map(depth_frame(), raw).x;
-#ifdef OBJECT_DEPTHS
-    let place = object_depth(object);
-    return abstract_response(a, mix(d, place.x, place.y), object_dial(object));
-#else
-    return abstract_response(a, d, vec2(1.0, 0.0));
-#endif
-}
-#endif
-
-// Factors of the responses of edges before these are limited to 1, by the nearer side. 1 without
-// Abstraction.
+// Factors of the responses of edges before these are limited to 1, by the nearer side.
 fn response_factors(at: Borders) -> vec4<f32> {
-#ifdef ABSTRACT_LINES
+#ifdef SIMPLIFIED_LINES
+    let s = line_pass.simplification;
     let near = max(at.here, at.there);
     let object = select(at.object_there, at.object_here, at.here >= at.there);
     return vec4(
-        response_factor(near.x, object.x), response_factor(near.y, object.y),
-        response_factor(near.z, object.z), response_factor(near.w, object.w),
+        response_factor(s, near.x, object.x), response_factor(s, near.y, object.y),
+        response_factor(s, near.z, object.z), response_factor(s, near.w, object.w),
     );
 #else
     return vec4(1.0);

@@ -45,13 +45,14 @@ pub(crate) struct ResolveKey {
 }
 
 impl ResolveKey {
-    pub fn new(key: &LineKey, samples: u32) -> Self {
+    pub fn new(key: LineKey, samples: u32) -> Self {
+        let normals = LineKey::CREASES | LineKey::FAITHFUL_CREASES | LineKey::LIGHT_WEIGHT;
         Self {
             samples,
-            oblique: key.oblique,
-            normals: key.creases || key.faithful[1] || key.weight.light,
-            ids: key.ids,
-            widths: key.weight.map,
+            oblique: key.contains(LineKey::OBLIQUE),
+            normals: key.intersects(normals),
+            ids: key.contains(LineKey::OBJECT_IDS),
+            widths: key.contains(LineKey::WIDTH_MAP),
         }
     }
 

@@ -14,58 +14,50 @@ use bevy::{
 
 use super::line_key::LineKey;
 use crate::{
-    lines::{
-        request::{LinePassUniform, Search},
-        textures::BLOCK_FORMAT,
-    },
+    lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
 
 impl LineKey {
-    /// The layout entries of what finding reads. `normals`: the normals are read.
-    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+    /// The layout entries of what the pass of a part of a key reads of the scene.
+    fn inputs(self, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+        if !self.contains(Self::DEPTH) {
+            return vec![];
+        }
         let float = || texture_2d(TextureSampleType::Float { filterable: false });
-        let mut entries = vec![float().build(2, stages)];
-        let seen = |mut entry: BindGroupLayoutEntry| {
+        let multisampled = self.contains(Self::MULTISAMPLED_PICTURE);
+        [
+            (Self::DEPTH, float().build(2, stages)),
+            (Self::VISIBLE_RANGE | Self::DEPTH_BORDERS, range_entry()),
+            (Self::OBJECT_STYLES, object_styles_entry()),
+            (Self::NORMALS, float().build(7, stages)),
+            (Self::OBJECT_IDS, ids_entry(false)),
+            (Self::OBJECT_DEPTHS, object_depths_entry()),
+            (Self::MARKS, picture_entry(multisampled, stages)),
+            (Self::WIDTH_MAP, widths_entry(false, stages)),
+            (Self::MOTION, float().build(24, stages)),
+        ]
+        .into_iter()
+        .filter(|(any, _)| self.intersects(*any))
+        .map(|(_, mut entry)| {
             entry.visibility = stages;
             entry
-        };
-        if self.visible_range || self.weight.found_borders {
-            entries.push(seen(range_entry()));
-        }
-        if self.object_styles {
-            entries.push(seen(object_styles_entry()));
-        }
-        if normals {
-            entries.push(float().build(7, stages));
-        }
-        if self.ids {
-            entries.push(seen(ids_entry(false)));
-        }
-        if self.reads_places() {
-            entries.push(seen(object_depths_entry()));
-        }
-        if self.marks {
-            entries.push(picture_entry(self.multisampled_picture, stages));
-        }
-        if self.weight.map {
-            entries.push(widths_entry(false, stages));
-        }
-        entries
+        })
+        .collect()
     }
 
-    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+    pub fn walk_layout(self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(ShaderStages::COMPUTE);
         let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
         entries.push(blocks.build(10, ShaderStages::COMPUTE));
-        if self.has_cracks() {
+        if self.contains(Self::CRACKS) {
             entries.extend(written_buffers([16, 17]));
         }
         layout("comics_walk", ShaderStages::COMPUTE, entries)
     }
 
-    pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
-        let inputs = self.inputs(self.creases, ShaderStages::COMPUTE);
+    pub fn cells_layout(self) -> BindGroupLayoutDescriptor {
+        let inputs = self.inputs(ShaderStages::COMPUTE);
         in_cells("comics_find_in_cells", inputs, [], [18, 21])
     }
 
@@ -77,68 +69,52 @@ impl LineKey {
         in_cells("comics_bridge_lines", vec![], [20], [18, 21])
     }
 
-    pub fn persist_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = vec![];
-        if self.motion {
-            let float = || texture_2d(TextureSampleType::Float { filterable: false });
-            entries.extend([2, 24].map(|at| float().build(at, ShaderStages::COMPUTE)));
-        }
-        in_cells("comics_persist_lines", entries, [28], [21, 29])
+    pub fn persist_layout(self) -> BindGroupLayoutDescriptor {
+        let inputs = self.inputs(ShaderStages::COMPUTE);
+        in_cells("comics_persist_lines", inputs, [28], [21, 29])
     }
 
     pub fn ends_layout() -> BindGroupLayoutDescriptor {
         in_cells("comics_line_ends", vec![], [11, 19, 20], [30])
     }
 
-    pub fn strokes_layout(&self) -> BindGroupLayoutDescriptor {
-        let ids = self.object_styles.then(|| ids_entry(false));
+    pub fn strokes_layout(self) -> BindGroupLayoutDescriptor {
+        let ids = self.contains(Self::OBJECT_IDS).then(|| ids_entry(false));
         layout("comics_line_strokes", ShaderStages::VERTEX_FRAGMENT, ids)
     }
 
-    pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = if self.reads_depth() {
-            self.inputs(self.weight.light, ShaderStages::COMPUTE)
-        } else {
-            vec![]
-        };
-        if self.smooth {
+    pub fn settle_layout(self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(ShaderStages::COMPUTE);
+        if self.contains(Self::SMOOTH) {
             entries.extend(written_buffers([22]));
         }
         in_cells("comics_settle_lines", entries, [20], [18])
     }
 
-    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+    pub fn find_layout(self) -> BindGroupLayoutDescriptor {
         let fragment = ShaderStages::FRAGMENT;
-        layout(
-            "comics_find_lines",
-            fragment,
-            self.inputs(self.creases, fragment),
-        )
+        layout("comics_find_lines", fragment, self.inputs(fragment))
     }
 
-    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
+    pub fn faithful_layout(self) -> BindGroupLayoutDescriptor {
         let fragment = ShaderStages::FRAGMENT;
-        layout(
-            "comics_faithful_lines",
-            fragment,
-            self.inputs(self.faithful[1], fragment),
-        )
+        layout("comics_faithful_lines", fragment, self.inputs(fragment))
     }
 
-    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
+    pub fn columns_layout(self) -> BindGroupLayoutDescriptor {
         layout("comics_line_columns", ShaderStages::FRAGMENT, self.stored())
     }
 
     /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
-    fn stored(&self) -> Vec<BindGroupLayoutEntry> {
+    fn stored(self) -> Vec<BindGroupLayoutEntry> {
         let fragment = ShaderStages::FRAGMENT;
-        let mut entries = if self.by_fragments {
-            vec![texture_2d(TextureSampleType::Uint).build(11, fragment)]
-        } else {
+        let mut entries = if self.contains(Self::BLOCKS) {
             let cracks = storage_buffer_read_only_sized(false, None).build(11, fragment);
             vec![cracks, planes_entry(fragment)]
+        } else {
+            vec![texture_2d(TextureSampleType::Uint).build(11, fragment)]
         };
-        if self.smooth {
+        if self.contains(Self::SMOOTH) {
             entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
         }
         entries
@@ -151,18 +127,16 @@ impl LineKey {
         layout("comics_list_tiles", ShaderStages::COMPUTE, entries)
     }
 
-    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+    pub fn draw_layout(self) -> BindGroupLayoutDescriptor {
         let fragment = ShaderStages::FRAGMENT;
-        let mut entries = if self.search == Search::Columns {
-            let texture = |binding| texture_2d(TextureSampleType::Uint).build(binding, fragment);
-            let mut entries = vec![texture(13)];
-            entries.extend((!self.by_fragments).then(|| texture(12)));
-            entries.extend(self.bridged.then(|| planes_entry(fragment)));
-            entries
-        } else {
-            self.stored()
-        };
-        entries.extend(self.object_styles.then(|| ids_entry(false)));
+        let texture = |at| texture_2d(TextureSampleType::Uint).build(at, fragment);
+        let mut entries = self.stored();
+        if self.contains(Self::COLUMNS) {
+            entries = vec![texture(13)];
+            entries.extend(self.contains(Self::BLOCKS).then(|| texture(12)));
+            entries.extend(self.contains(Self::BRIDGED).then(|| planes_entry(fragment)));
+        }
+        entries.extend(self.contains(Self::OBJECT_IDS).then(|| ids_entry(false)));
         layout("comics_draw_lines", fragment, entries)
     }
 }

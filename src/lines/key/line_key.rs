@@ -1,306 +1,364 @@
 //! The keys that select the variants of the line passes.
 
-use bevy::math::Vec2;
+use bevy::{math::Vec2, shader::ShaderDefVal};
+use bitflags::bitflags;
 
-use super::weight_key::WeightKey;
 use crate::{
-    lines::{
-        modifiers::SheetKey,
-        request::{LineRequest, Search},
-    },
+    lines::request::{LineRequest, Search},
     settings::Equations,
 };
 
-/// What selects the shader variants of the passes that find and draw lines.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct LineKey {
-    pub oblique: bool,
-    /// Measured silhouettes and creases: those of the corrected equations.
-    pub silhouettes: bool,
-    pub creases: bool,
-    pub object_edges: bool,
-    /// Borders of sections are creases.
-    pub sections: bool,
-    /// The lines are those of marked objects; and whether the depth that hides them is
-    /// multisampled.
-    pub marks: bool,
-    pub multisampled_picture: bool,
-    pub ids: bool,
-    pub object_styles: bool,
-    pub fading: bool,
-    /// Edges must be stronger where the picture is abstract.
-    pub abstracts: bool,
-    /// They are as abstract as their object.
-    pub abstracts_objects: bool,
-    pub visible_range: bool,
-    /// Whether there are silhouettes and creases of the faithful equations.
-    pub faithful: [bool; 2],
-    /// Cracks are linked to lines; of a part of a key: they are completed after they were
-    /// found.
-    pub links: bool,
-    /// Lines stay where their edges have become weak; and whether the engine's motion
-    /// vectors say where they were.
-    pub persists: bool,
-    pub motion: bool,
-    /// Loose ends are extended.
-    pub overshoots: bool,
-    /// Lines are joined over faces that are thinner than a pixel.
-    pub ledges: bool,
-    /// Creases and object edges may be parts of silhouettes.
-    pub rims: bool,
-    /// Gaps in lines are closed.
-    pub bridged: bool,
-    /// Lines run straight through the steps of pixels.
-    pub smooth: bool,
-    /// Which factors of width and opacity are not 1.
-    pub weight: WeightKey,
-    /// The colour of lines depends on the surface that they belong to.
-    pub surface: bool,
-    /// They take the colour a pixel inside of it, because its rim is mixed with others.
-    pub inward: bool,
-    /// Lines are displaced.
-    pub boils: bool,
-    /// What they have of the sheet that they are drawn on.
-    pub sheet: SheetKey,
-    /// The width changes along a line.
-    pub varied: bool,
-    /// The depth texture has one pixel per pixel of the viewport.
-    pub same_size: bool,
-    pub search: Search,
-    /// Jumps of the depth map are searched too, with these flags of the map.
-    pub jumps: bool,
-    pub(super) map_flags: u32,
-    /// The device has no compute shaders: the passes draw all pixels, not tiles.
-    pub by_fragments: bool,
+bitflags! {
+    /// What selects the shader variants of the passes that find and draw lines. The key of a view
+    /// has what its lines need; its parts, such as [`LineKey::for_find`], have what is compiled
+    /// into one pass: their names are shader definitions. The two highest bits are flags of the
+    /// depth map.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub(crate) struct LineKey: u64 {
+        /// The depth texture has one pixel per pixel of the viewport.
+        const SAME_SIZE = 1;
+        const OBLIQUE = 1 << 1;
+        const DEPTH = 1 << 2;
+        const NORMALS = 1 << 3;
+        const OBJECT_IDS = 1 << 4;
+        const OBJECT_STYLES = 1 << 5;
+        /// The places of objects in the depth map are read.
+        const OBJECT_DEPTHS = 1 << 6;
+        const VISIBLE_RANGE = 1 << 7;
+
+        /// There are lines along cracks: those that follow, of the corrected equations.
+        const CRACKS = 1 << 8;
+        const SILHOUETTES = 1 << 9;
+        const CREASES = 1 << 10;
+        const OBJECT_EDGES = 1 << 11;
+        /// Borders of sections are creases.
+        const SECTIONS = 1 << 12;
+        /// The lines are those of marked objects; and whether the depth that hides them is
+        /// multisampled.
+        const MARKS = 1 << 13;
+        const MULTISAMPLED_PICTURE = 1 << 14;
+        /// The excess of steps in depth is computed. It excludes creases too.
+        const EXCESS = 1 << 15;
+        const FADING = 1 << 16;
+        /// Edges must be stronger where lines are simpler; and whether they are as simple as their
+        /// object.
+        const SIMPLIFIED_LINES = 1 << 17;
+        const FINDS_BY_OBJECTS = 1 << 18;
+        /// Blocks are searched whose cells may have cracks.
+        const BOUNDS = 1 << 19;
+        /// Jumps of the depth map are searched too, with the flags of the map.
+        const JUMPS = 1 << 20;
+        const FAITHFUL_SILHOUETTES = 1 << 21;
+        const FAITHFUL_CREASES = 1 << 22;
+
+        /// Cracks are completed after they were found.
+        const COMPLETED = 1 << 23;
+        /// Lines stay where their edges have become weak; and whether the engine's motion vectors
+        /// say where they were.
+        const PERSISTS = 1 << 24;
+        const MOTION = 1 << 25;
+        /// Loose ends are extended.
+        const OVERSHOOTS = 1 << 26;
+        /// Lines are joined over faces that are thinner than a pixel.
+        const LEDGES = 1 << 27;
+        /// Creases and object edges may be parts of silhouettes.
+        const RIMS = 1 << 28;
+        /// Gaps in lines are closed.
+        const BRIDGED = 1 << 29;
+        /// Lines run straight through the steps of pixels; creases where their two sides meet.
+        const SMOOTH = 1 << 30;
+        const FOLDS = 1 << 31;
+        /// Completing cracks changes the cracks that it keeps.
+        const EDITS = 1 << 32;
+
+        /// Some factor of width or opacity is not 1: one of those that follow.
+        const WEIGHT = 1 << 33;
+        const KIND_WEIGHT = 1 << 34;
+        /// Silhouettes in front of other objects differ from those in front of the same.
+        const OUTER_WEIGHT = 1 << 35;
+        const LIGHT_WEIGHT = 1 << 36;
+        /// The widths that are drawn with object ids: pressure, and those of vertices.
+        const WIDTH_MAP = 1 << 37;
+        /// One of the two before.
+        const SURFACE_WEIGHT = 1 << 38;
+        const PERSPECTIVE_WEIGHT = 1 << 39;
+        const NIB_WEIGHT = 1 << 40;
+        const TAPER_WEIGHT = 1 << 41;
+        /// Lines are thinner where they crowd.
+        const BUDGET = 1 << 42;
+        const FOG = 1 << 43;
+        /// Lines fade with the distance from another one.
+        const DISTANCE_FADE = 1 << 44;
+        /// Near, middle and far have lines of their own; and whether their borders are found.
+        const IN_LAYERS = 1 << 45;
+        const DEPTH_BORDERS = 1 << 46;
+        /// Creases are fainter where lines are simpler.
+        const SIMPLIFIED_CREASES = 1 << 47;
+        /// Whole objects are in a layer or simpler.
+        const WEIGHS_BY_OBJECTS = 1 << 48;
+        /// The width changes along a line.
+        const VARIED = 1 << 49;
+
+        /// Tiles are drawn: the device has compute shaders. Otherwise all pixels are.
+        const BLOCKS = 1 << 50;
+        /// How cracks near a pixel are searched, see [`Search`].
+        const NEIGHBOURS = 1 << 51;
+        const COLUMNS = 1 << 52;
+        /// The colour of lines depends on the surface that they belong to; and whether they take
+        /// the colour a pixel inside of it, because its rim is mixed with others.
+        const SURFACE = 1 << 53;
+        const INWARD = 1 << 54;
+        /// Drawing must know the pixel that owns a line.
+        const OWNERS = 1 << 55;
+        /// Lines are displaced.
+        const BOIL = 1 << 56;
+        /// Of the sheet that lines are drawn on: edges are rough; wide lines have streaks.
+        const SPREAD = 1 << 57;
+        const STREAKS = 1 << 58;
+    }
 }
 
+/// The lowest bit of the flags of the depth map.
+const MAP_FLAGS: u32 = 62;
+
 impl LineKey {
+    /// What walking and finding read of a view and its lines.
+    const FOUND: Self = Self::SAME_SIZE
+        .union(Self::OBLIQUE)
+        .union(Self::SILHOUETTES)
+        .union(Self::CREASES)
+        .union(Self::OBJECT_EDGES)
+        .union(Self::SECTIONS)
+        .union(Self::MARKS)
+        .union(Self::MULTISAMPLED_PICTURE)
+        .union(Self::LEDGES);
+
+    /// Widths that change along a line. Where lines crowd, a shift of half a pixel cannot be seen.
+    const VARYING: Self = Self::LIGHT_WEIGHT
+        .union(Self::WIDTH_MAP)
+        .union(Self::PERSPECTIVE_WEIGHT)
+        .union(Self::NIB_WEIGHT)
+        .union(Self::TAPER_WEIGHT);
+
+    /// All factors of width and opacity.
+    const WEIGHTS: Self = Self::VARYING
+        .union(Self::KIND_WEIGHT)
+        .union(Self::BUDGET)
+        .union(Self::FOG)
+        .union(Self::DISTANCE_FADE)
+        .union(Self::IN_LAYERS)
+        .union(Self::SIMPLIFIED_CREASES);
+
+    /// What there is only on devices with compute shaders.
+    const COMPUTED: Self = Self::WEIGHTS
+        .union(Self::OUTER_WEIGHT)
+        .union(Self::DEPTH_BORDERS)
+        .union(Self::WEIGHS_BY_OBJECTS)
+        .union(Self::FINDS_BY_OBJECTS)
+        .union(Self::COMPLETED)
+        .union(Self::PERSISTS)
+        .union(Self::OVERSHOOTS)
+        .union(Self::LEDGES)
+        .union(Self::RIMS)
+        .union(Self::BRIDGED)
+        .union(Self::SMOOTH)
+        .union(Self::BLOCKS);
+
     pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
+        let weight = &lines.weight;
         let forms = [
             lines.silhouettes.map(|s| s.equations),
             lines.creases.map(|c| c.equations),
         ];
         let [silhouettes, creases] = forms.map(|form| form == Some(Equations::Corrected));
-        let weight = if by_fragments {
-            WeightKey::default()
-        } else {
-            WeightKey {
-                fog: request.fog.is_some(),
-                focus: request.focus.is_some(),
-                layers: request.layers.is_some(),
-                found_borders: request.layers.is_some_and(|layers| layers.finds_borders),
-                by_objects: request.reads_places() && request.ids,
-                abstracts: request.abstraction.is_some_and(|a| a.crease_opacity < 1.0),
-                map: request.widths,
-                ..WeightKey::new(lines)
-            }
-        };
-        Self {
-            oblique: request.oblique,
-            silhouettes,
-            creases,
-            object_edges: lines.objects.is_some() && request.ids,
-            sections: creases && request.sections && request.ids,
-            marks: request.marks,
-            multisampled_picture: request.marks && request.samples > 1,
-            ids: request.ids,
-            object_styles: request.object_styles,
-            fading: lines.fades(),
-            abstracts: request.abstraction.is_some_and(|a| a.threshold > 1.0),
-            abstracts_objects: request.abstracts_objects() && !by_fragments,
-            visible_range: request.visible_range,
-            faithful: forms.map(|form| form == Some(Equations::Faithful)),
-            links: lines.links() && !by_fragments,
-            persists: lines.persists() && !by_fragments,
-            motion: lines.persists() && request.motion,
-            overshoots: lines.overshoots() && !by_fragments,
-            ledges: lines.joins() && !by_fragments,
-            rims: silhouettes
-                && (creases || lines.objects.is_some() && request.ids)
-                && lines.links()
-                && !by_fragments,
-            bridged: lines.gap_closing > 0 && !by_fragments,
-            smooth: lines.smooth && !by_fragments,
-            weight,
-            surface: request.needs_owners(),
-            inward: request.needs_owners() && request.samples > 1,
-            boils: lines.boil.moves(),
-            sheet: request.sheet.key(),
-            varied: weight.varies(),
-            same_size: request.view.depth_scale == Vec2::ONE,
-            search: request.search(),
-            jumps: request.jumps.is_some(),
-            map_flags: request.map_flags,
-            by_fragments,
+        let faithful = forms.map(|form| form == Some(Equations::Faithful));
+        let object_edges = lines.objects.is_some() && request.ids;
+        let rims = silhouettes && (creases || object_edges);
+        let kinds = [weight.outer, weight.inner, weight.crease, weight.object];
+        let layers = request.layers.as_ref();
+        let [fewer, fainter] = (request.simplification)
+            .map(|s| [s.threshold > 1.0, s.crease_opacity < 1.0])
+            .unwrap_or_default();
+        let multisampled = request.samples > 1;
+        let search = request.search();
+        let flags = [
+            (request.view.depth_scale == Vec2::ONE, Self::SAME_SIZE),
+            (request.oblique, Self::OBLIQUE),
+            (request.ids, Self::OBJECT_IDS),
+            (request.object_styles, Self::OBJECT_STYLES),
+            (request.visible_range, Self::VISIBLE_RANGE),
+            (silhouettes, Self::SILHOUETTES),
+            (creases, Self::CREASES),
+            (object_edges, Self::OBJECT_EDGES),
+            (creases && request.sections && request.ids, Self::SECTIONS),
+            (request.marks, Self::MARKS),
+            (request.marks && multisampled, Self::MULTISAMPLED_PICTURE),
+            (lines.fades(), Self::FADING),
+            (fewer, Self::SIMPLIFIED_LINES),
+            (request.finds_by_objects(), Self::FINDS_BY_OBJECTS),
+            (request.jumps.is_some(), Self::JUMPS),
+            (faithful[0], Self::FAITHFUL_SILHOUETTES),
+            (faithful[1], Self::FAITHFUL_CREASES),
+            (lines.links(), Self::COMPLETED),
+            (lines.persists(), Self::PERSISTS),
+            (lines.persists() && request.motion, Self::MOTION),
+            (lines.overshoots(), Self::OVERSHOOTS),
+            (lines.joins(), Self::LEDGES),
+            (rims && lines.links(), Self::RIMS),
+            (lines.gap_closing > 0, Self::BRIDGED),
+            (lines.smooth, Self::SMOOTH),
+            (kinds != [1.0; 4], Self::KIND_WEIGHT),
+            (weight.reads_ids(), Self::OUTER_WEIGHT),
+            (weight.reads_normals(), Self::LIGHT_WEIGHT),
+            (request.widths, Self::WIDTH_MAP),
+            (weight.perspective > 0.0, Self::PERSPECTIVE_WEIGHT),
+            (weight.nib_roundness < 1.0 && lines.smooth, Self::NIB_WEIGHT),
+            (weight.taper > 0.0, Self::TAPER_WEIGHT),
+            (lines.ink_budget < 1.0, Self::BUDGET),
+            (request.fog.is_some(), Self::FOG),
+            (request.fade.is_some(), Self::DISTANCE_FADE),
+            (layers.is_some(), Self::IN_LAYERS),
+            (layers.is_some_and(|l| l.finds_borders), Self::DEPTH_BORDERS),
+            (fainter, Self::SIMPLIFIED_CREASES),
+            (request.weighs_by_objects(), Self::WEIGHS_BY_OBJECTS),
+            (true, Self::BLOCKS),
+            (search == Search::Neighbours, Self::NEIGHBOURS),
+            (search == Search::Columns, Self::COLUMNS),
+            (request.needs_owners(), Self::SURFACE),
+            (request.needs_owners() && multisampled, Self::INWARD),
+            (lines.boil.moves(), Self::BOIL),
+            (request.sheet.ink_bleed > 0.0, Self::SPREAD),
+            (request.sheet.dry_brush > 0.0, Self::STREAKS),
+        ];
+        let set = flags.into_iter().filter(|(on, _)| *on);
+        let mut key: Self = set.map(|(_, flag)| flag).collect();
+        if by_fragments {
+            key.remove(Self::COMPUTED);
         }
+        let lines = Self::SILHOUETTES | Self::CREASES | Self::OBJECT_EDGES;
+        let folds = key.contains(Self::CREASES | Self::SMOOTH);
+        key | key.when(lines, Self::CRACKS)
+            | key.when(Self::WEIGHTS | Self::SMOOTH, Self::COMPLETED)
+            | key.when(Self::WEIGHTS, Self::WEIGHT)
+            | key.when(Self::VARYING, Self::VARIED)
+            | key.when(Self::OBJECT_STYLES | Self::SURFACE, Self::OWNERS)
+            | if folds { Self::FOLDS } else { Self::empty() }
+            | Self::from_bits_retain(u64::from(request.map_flags) << MAP_FLAGS)
     }
 
-    /// Whether there are lines along cracks, besides those of the faithful equations.
-    pub fn has_cracks(&self) -> bool {
-        self.silhouettes || self.creases || self.object_edges
-    }
-
-    /// Whether the cracks are completed after they were found.
-    pub fn settles(&self) -> bool {
-        self.links || self.smooth || self.weight.any()
-    }
-
-    pub fn has_faithful(&self) -> bool {
-        self.faithful.contains(&true)
+    /// These flags if the key has any of others.
+    fn when(self, any: Self, flags: Self) -> Self {
+        if self.intersects(any) {
+            flags
+        } else {
+            Self::empty()
+        }
     }
 
     /// The part that the search for blocks with cracks depends on.
     pub fn for_walk(self) -> Self {
-        Self {
-            ids: self.object_edges || self.sections,
-            object_styles: false,
-            fading: false,
-            abstracts: false,
-            abstracts_objects: false,
-            visible_range: self.jumps && self.visible_range,
-            links: false,
-            bridged: self.bridged,
-            jumps: self.jumps,
-            map_flags: if self.jumps { self.map_flags } else { 0 },
-            ..self.for_find()
-        }
+        let map = Self::VISIBLE_RANGE | Self::from_bits_retain(u64::MAX << MAP_FLAGS);
+        self & (Self::FOUND | Self::CRACKS | Self::BRIDGED | Self::JUMPS)
+            | Self::DEPTH
+            | Self::BOUNDS
+            | self.when(Self::SILHOUETTES | Self::LEDGES, Self::EXCESS)
+            | self.when(Self::CREASES, Self::NORMALS)
+            | self.when(Self::OBJECT_EDGES | Self::SECTIONS, Self::OBJECT_IDS)
+            | self.when(Self::JUMPS, self & map)
     }
 
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
-        Self {
-            oblique: self.oblique,
-            silhouettes: self.silhouettes,
-            creases: self.creases,
-            object_edges: self.object_edges,
-            sections: self.sections,
-            marks: self.marks,
-            multisampled_picture: self.multisampled_picture,
-            ids: self.object_edges || self.object_styles || self.sections || self.abstracts_objects,
-            object_styles: self.object_styles,
-            fading: self.fading,
-            abstracts: self.abstracts,
-            abstracts_objects: self.abstracts_objects,
-            visible_range: (self.fading || self.abstracts) && self.visible_range,
-            links: self.settles(),
-            ledges: self.ledges,
-            same_size: self.same_size,
-            by_fragments: self.by_fragments,
-            ..Self::default()
-        }
+        let simplified = Self::SIMPLIFIED_LINES | Self::FINDS_BY_OBJECTS;
+        let objects = Self::OBJECT_EDGES | Self::OBJECT_STYLES | Self::SECTIONS;
+        self & (Self::FOUND | Self::OBJECT_STYLES | Self::FADING | simplified | Self::COMPLETED)
+            | Self::DEPTH
+            | self.when(Self::SILHOUETTES | Self::CREASES, Self::EXCESS)
+            | self.when(Self::CREASES, Self::NORMALS)
+            | self.when(objects | Self::FINDS_BY_OBJECTS, Self::OBJECT_IDS)
+            | self.when(Self::FINDS_BY_OBJECTS, Self::OBJECT_DEPTHS)
+            | self.when(
+                Self::FADING | Self::SIMPLIFIED_LINES,
+                self & Self::VISIBLE_RANGE,
+            )
     }
 
     /// The part that the faithful equations depend on.
     pub fn for_faithful(self) -> Self {
-        Self {
-            oblique: self.oblique,
-            ids: self.ids,
-            object_styles: self.object_styles,
-            fading: self.fading,
-            visible_range: self.fading && self.visible_range,
-            faithful: self.faithful,
-            surface: self.surface,
-            same_size: self.same_size,
-            ..Self::default()
-        }
+        let view = Self::SAME_SIZE | Self::OBLIQUE | Self::OBJECT_IDS | Self::OBJECT_STYLES;
+        let faithful = Self::FAITHFUL_SILHOUETTES | Self::FAITHFUL_CREASES;
+        self & (view | faithful | Self::FADING | Self::SURFACE)
+            | Self::DEPTH
+            | self.when(Self::FAITHFUL_CREASES, Self::NORMALS)
+            | self.when(Self::FADING, self & Self::VISIBLE_RANGE)
     }
 
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
-        let weight = self.weight;
-        let reads_map = weight.perspective || weight.layers || weight.abstracts;
-        Self {
-            ledges: self.ledges,
-            rims: self.rims,
-            bridged: self.bridged,
-            smooth: self.smooth,
-            creases: self.creases && self.smooth,
-            weight,
-            ids: (weight.outer || weight.by_objects) && self.ids,
-            oblique: (weight.any() || self.rims || self.creases && self.smooth) && self.oblique,
-            visible_range: reads_map && self.visible_range,
-            ..Self::default()
-        }
-    }
-
-    /// Whether the places of objects in the depth map are read, of a key for a pass.
-    pub fn reads_places(&self) -> bool {
-        self.weight.by_objects || self.abstracts_objects
-    }
-
-    /// Whether completing cracks reads depth, of a key for that pass.
-    pub fn reads_depth(&self) -> bool {
-        self.creases || self.rims || self.weight.any()
+        let lines = Self::LEDGES | Self::RIMS | Self::BRIDGED | Self::SMOOTH | Self::FOLDS;
+        let on_map = Self::PERSPECTIVE_WEIGHT | Self::IN_LAYERS | Self::SIMPLIFIED_CREASES;
+        let reads = Self::DEPTH | Self::EDITS | self & Self::OBLIQUE;
+        let by_objects = Self::OUTER_WEIGHT | Self::WEIGHS_BY_OBJECTS;
+        self & (lines | Self::WEIGHT | Self::WEIGHTS | Self::DEPTH_BORDERS)
+            | self.when(Self::FOLDS | Self::RIMS | Self::WEIGHT, reads)
+            | self.when(Self::LIGHT_WEIGHT, Self::NORMALS)
+            | self.when(Self::LIGHT_WEIGHT | Self::WIDTH_MAP, Self::SURFACE_WEIGHT)
+            | self.when(by_objects, self & Self::OBJECT_IDS)
+            | self.when(Self::WEIGHS_BY_OBJECTS, Self::OBJECT_DEPTHS)
+            | self.when(on_map, self & Self::VISIBLE_RANGE)
     }
 
     /// The part that keeping the lines of the last frames depends on.
     pub fn for_persist(self) -> Self {
-        Self {
-            motion: self.motion,
-            oblique: self.motion && self.oblique,
-            ..Self::default()
-        }
+        self.when(
+            Self::MOTION,
+            Self::MOTION | Self::DEPTH | self & Self::OBLIQUE,
+        )
     }
 
     /// The part that extending loose ends depends on.
     pub fn for_ends(self) -> Self {
-        Self {
-            varied: self.varied,
-            bridged: self.bridged && self.has_owners(),
-            ..Self::default()
-        }
+        Self::BLOCKS
+            | Self::SMOOTH
+            | self & Self::VARIED
+            | self.when(Self::OWNERS, self & Self::BRIDGED)
+    }
+
+    /// What drawing and strokes have of the colours of lines and their sheet.
+    fn for_ink(self) -> Self {
+        let ink = Self::BOIL | Self::SPREAD | Self::STREAKS | Self::SURFACE | Self::INWARD;
+        self & (ink | Self::OBJECT_STYLES) | self.when(Self::OBJECT_STYLES, Self::OBJECT_IDS)
     }
 
     /// The part that drawing the strokes beyond loose ends depends on.
     pub fn for_strokes(self) -> Self {
-        Self {
-            ids: self.object_styles,
-            object_styles: self.object_styles,
-            boils: self.boils,
-            sheet: self.sheet,
-            surface: self.surface,
-            inward: self.inward,
-            weight: WeightKey {
-                taper: self.weight.taper,
-                ..WeightKey::default()
-            },
-            ..Self::default()
-        }
+        self.for_ink() | self & Self::TAPER_WEIGHT
     }
 
     /// The part that the search in columns depends on.
     pub fn for_columns(self) -> Self {
-        Self {
-            links: self.settles(),
-            smooth: self.smooth,
-            varied: self.varied,
-            by_fragments: self.by_fragments,
-            ..Self::default()
-        }
+        self & (Self::COMPLETED | Self::SMOOTH | Self::VARIED | Self::BLOCKS)
     }
 
-    /// Whether drawing must know the pixel that owns a line.
-    pub(super) fn has_owners(&self) -> bool {
-        self.object_styles || self.surface
-    }
-
-    /// The part that drawing depends on.
+    /// The part that drawing depends on. The columns were searched with what cracks have.
     pub fn for_draw(self) -> Self {
-        Self {
-            ids: self.object_styles,
-            object_styles: self.object_styles,
-            search: self.search,
-            links: self.settles() && self.search != Search::Columns,
-            boils: self.boils,
-            sheet: self.sheet,
-            surface: self.surface,
-            inward: self.inward,
-            bridged: self.bridged && self.has_owners(),
-            smooth: self.smooth && self.search != Search::Columns,
-            varied: self.varied && self.search != Search::Columns,
-            by_fragments: self.by_fragments,
-            ..Self::default()
+        let searched = Self::COMPLETED | Self::SMOOTH | Self::VARIED;
+        let drawn = self.for_ink()
+            | self & (Self::NEIGHBOURS | Self::COLUMNS | Self::BLOCKS | Self::OWNERS)
+            | self.when(Self::OWNERS, self & Self::BRIDGED);
+        if self.contains(Self::COLUMNS) {
+            drawn
+        } else {
+            drawn | self & searched
         }
+    }
+
+    /// The shader definitions of a pass, of its part of a key.
+    pub fn defs(self) -> Vec<ShaderDefVal> {
+        let flags = ShaderDefVal::UInt("MAP_FLAGS".into(), (self.bits() >> MAP_FLAGS) as u32);
+        let map = self.contains(Self::JUMPS).then_some(flags);
+        let names = self.iter_names().map(|(name, _)| name.into());
+        names.chain(map).collect()
     }
 }

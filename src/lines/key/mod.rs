@@ -1,9 +1,7 @@
 //! What selects the shader variants of the passes, and what they bind.
 
-mod defs;
 mod layouts;
 mod line_key;
-mod weight_key;
 
 pub(crate) use layouts::{ink_entry, owners_entry, range_entry};
 pub(crate) use line_key::LineKey;

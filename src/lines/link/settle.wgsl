@@ -34,11 +34,10 @@
 #ifdef FOG
 #import bevy_comics::lines::fog::{fog_distance, fog_fraction}
 #endif
-#ifdef IN_FOCUS
-#import bevy_comics::lines::focus::line_sharpness
-#endif
-#import bevy_comics::lines::owner_plane::{crease_left, owner_weights}
+#import bevy_comics::lines::fade::fade_factor
 #import bevy_comics::lines::layer_lines::layer_factors
+#import bevy_comics::lines::owner_plane::{object_at, owner_weights}
+#import bevy_comics::lines::simplification::crease_factor
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -259,15 +258,16 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     fog = fog_fraction(line_pass.fog, fog_distance(line_pass.fog, position, texel_depth(owner, 0)));
 #endif
     var left = vec2(factor, 1.0 - fog);
-#ifdef IN_FOCUS
+#ifdef DISTANCE_FADE
     let middle = texel_depth(g.rect.xy + g.rect.zw / 2, 0);
-    left *= line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
+    left *= fade_factor(line_pass.fade, texel_depth(owner, 0), middle);
 #endif
 #ifdef IN_LAYERS
     left *= layer_factors(line_pass.layers, owner_weights(line_pass.layers, owner));
 #endif
-#ifdef ABSTRACT_CREASES
-    left.y *= select(1.0, crease_left(line_pass.abstraction, owner), (packed & CREASE) != 0u);
+#ifdef SIMPLIFIED_CREASES
+    let fainter = crease_factor(line_pass.simplification, texel_depth(owner, 0), object_at(owner));
+    left.y *= select(1.0, fainter, (packed & CREASE) != 0u);
 #endif
     return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
 }

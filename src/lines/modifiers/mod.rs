@@ -1,32 +1,33 @@
 //! What effects change about lines.
 
-mod abstraction;
-mod focus;
+mod fade;
 mod layer_lines;
 mod sheet;
+mod simplification;
 
-pub use abstraction::LineAbstraction;
-pub use focus::LineFocus;
+pub use fade::LineFade;
 pub use layer_lines::LineLayers;
 pub use sheet::Sheet;
+pub use simplification::LineSimplification;
 
-pub(crate) use abstraction::LineAbstractionUniform;
-pub(crate) use focus::LineFocusUniform;
+pub(crate) use fade::LineFadeUniform;
 pub(crate) use layer_lines::LineLayersUniform;
-pub(crate) use sheet::{SheetKey, SheetUniform};
+pub(crate) use sheet::SheetUniform;
+pub(crate) use simplification::LineSimplificationUniform;
 
 /// What an effect changes about the lines of its camera
 /// ([`Effect::line_modifiers`](crate::Effect::line_modifiers)).
 ///
-/// Faithful lines are not changed, and `focus`, `layers` and `abstraction` need compute shaders.
+/// Faithful lines are not changed. Without compute shaders, `fade`, `layers` and the opacity of
+/// creases are not, and lines are simplified by their own place, not by that of their object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineModifiers {
-    /// The distance at which lines are in focus; farther from it they fade. Default: none.
-    pub focus: Option<LineFocus>,
+    /// The distance at which lines are whole; farther from it they fade. Default: none.
+    pub fade: Option<LineFade>,
     /// Width, opacity and colour of lines in foreground, middle and background. Default: none.
     pub layers: Option<LineLayers>,
-    /// How lines follow the abstraction of the view. Default: none.
-    pub abstraction: Option<LineAbstraction>,
+    /// How lines are simplified by the depth map. Default: not.
+    pub simplification: Option<LineSimplification>,
     /// The sheet of paper that lines are drawn on: their edges are rough, and wide lines have
     /// streaks. Default: none.
     pub sheet: Option<Sheet>,
@@ -37,9 +38,9 @@ impl LineModifiers {
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
-            focus: self.focus.or(other.focus),
+            fade: self.fade.or(other.fade),
             layers: self.layers.or(other.layers),
-            abstraction: self.abstraction.or(other.abstraction),
+            simplification: self.simplification.or(other.simplification),
             sheet: self.sheet.or(other.sheet),
         }
     }

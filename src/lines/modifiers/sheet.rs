@@ -52,28 +52,10 @@ impl Sheet {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SheetUniform {
     origin: Vec2,
-    ink_bleed: f32,
-    dry_brush: f32,
+    pub ink_bleed: f32,
+    pub dry_brush: f32,
     scale: f32,
     unit: f32,
     seed: u32,
     unused: u32,
-}
-
-/// What of the sheet is compiled into the passes that draw lines.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct SheetKey {
-    /// Edges are rough.
-    pub spreads: bool,
-    /// Wide lines have streaks.
-    pub streaks: bool,
-}
-
-impl SheetUniform {
-    pub fn key(&self) -> SheetKey {
-        SheetKey {
-            spreads: self.ink_bleed > 0.0,
-            streaks: self.dry_brush > 0.0,
-        }
-    }
 }

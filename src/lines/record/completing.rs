@@ -2,17 +2,14 @@
 
 use bevy::render::render_resource::{
     BindGroupEntry, BindGroupLayoutDescriptor, CachedComputePipelineId, ComputePipeline,
-    IntoBinding,
 };
 
 use super::{
     inputs::Inputs,
     ready::{Ready, ReadyLives},
-    sources::{NOT_READY, Reads},
 };
 use crate::{
     diagnostics::SkipReason,
-    gpu::entry,
     lines::{cracks::CrackBuffers, key::LineKey, passes::CellPasses, prepare::Cracks},
 };
 
@@ -81,9 +78,7 @@ impl Inputs<'_> {
         };
         let key = self.passes.key.for_settle();
         let mut entries = buffers.settle_entries(self.request.copies());
-        if key.reads_depth() {
-            entries.extend(self.entries(&key, key.weight.light)?);
-        }
+        entries.extend(self.entries(key)?);
         Ok(Some(self.in_cells(id, &key.settle_layout(), &entries)?))
     }
 
@@ -99,11 +94,7 @@ impl Inputs<'_> {
         let key = self.passes.key.for_persist();
         let mut entries = vec![buffers.written_planes(self.request.joined())];
         entries.extend(lives.entries());
-        if key.motion {
-            let motion = self.sources.motion.ok_or(NOT_READY)?;
-            self.texels()?.push(Reads::default(), &mut entries)?;
-            entries.push(entry(24, motion.into_binding()));
-        }
+        entries.extend(self.entries(key)?);
         let ready = self.in_cells(id, &key.persist_layout(), &entries)?;
         Ok(Some((ready, lives)))
     }

@@ -28,7 +28,10 @@ use crate::{
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    lines::{passes::LinePasses, prepare::ViewLines, request::LineRequest, textures::cleared},
+    lines::{
+        key::LineKey, passes::LinePasses, prepare::ViewLines, request::LineRequest,
+        textures::cleared,
+    },
     objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 #[cfg(feature = "objects")]
@@ -116,7 +119,7 @@ pub(crate) fn find_lines(
     };
     let searched = if passes.search.is_some() {
         outcome
-    } else if passes.key.has_cracks() || passes.key.jumps {
+    } else if passes.key.intersects(LineKey::CRACKS | LineKey::JUMPS) {
         StageOutcome::Skipped(SkipReason::NoComputeShaders)
     } else {
         StageOutcome::Skipped(SkipReason::NoSuchLines)

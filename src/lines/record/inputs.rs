@@ -147,38 +147,41 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let key = self.passes.key.for_faithful();
-        let entries = self.entries(&key, key.faithful[1])?;
+        let entries = self.entries(key)?;
         Ok(Some(self.render(id, &key.faithful_layout(), &entries)?))
     }
 
-    /// What the passes that find lines bind of the scene. `normals`: the normals too.
-    pub(super) fn entries(
-        &self,
-        key: &LineKey,
-        normals: bool,
-    ) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
+    /// What the pass of a part of a key binds of the scene, see [`LineKey`]'s layouts.
+    pub(super) fn entries(&self, key: LineKey) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
         let mut entries = vec![];
+        if !key.contains(LineKey::DEPTH) {
+            return Ok(entries);
+        }
         let reads = Reads {
-            normals,
-            ids: key.ids,
-            widths: key.weight.map,
+            normals: key.contains(LineKey::NORMALS),
+            ids: key.contains(LineKey::OBJECT_IDS),
+            widths: key.contains(LineKey::WIDTH_MAP),
         };
         self.texels()?.push(reads, &mut entries)?;
-        if key.visible_range || key.weight.found_borders {
+        if key.intersects(LineKey::VISIBLE_RANGE | LineKey::DEPTH_BORDERS) {
             let keys = self.range.and_then(ViewDepthRange::drawn);
             entries.push(entry(3, keys.ok_or(NOT_READY)?.as_entire_binding()));
         }
-        if key.object_styles {
+        if key.contains(LineKey::OBJECT_STYLES) {
             let styles = self.styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
         }
-        if key.reads_places() {
+        if key.contains(LineKey::OBJECT_DEPTHS) {
             let places = self.sources.places.ok_or(NOT_READY)?;
             entries.push(entry(OBJECT_DEPTHS_BINDING, places.as_entire_binding()));
         }
-        if key.marks {
+        if key.contains(LineKey::MARKS) {
             let picture = self.sources.picture.ok_or(NOT_READY)?;
             entries.push(entry(27, picture.into_binding()));
+        }
+        if key.contains(LineKey::MOTION) {
+            let motion = self.sources.motion.ok_or(NOT_READY)?;
+            entries.push(entry(24, motion.into_binding()));
         }
         Ok(entries)
     }
@@ -190,9 +193,9 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let key = self.passes.key.for_walk();
-        let mut walked = self.entries(&key, key.creases)?;
+        let mut walked = self.entries(key)?;
         walked.push(texture_entry(10, &tiles.blocks));
-        if key.has_cracks() {
+        if key.contains(LineKey::CRACKS) {
             walked.extend(tiles.lists.cell_entries());
         }
         let mut listed = vec![texture_entry(12, &tiles.blocks)];
@@ -214,7 +217,7 @@ impl Inputs<'_> {
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, SkipReason> {
         let key = self.passes.key.for_find();
-        let find = self.find_pass(passes.find, &key, cracks)?;
+        let find = self.find_pass(passes.find, key, cracks)?;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
                 let layout = self.passes.key.for_columns().columns_layout();
@@ -236,10 +239,10 @@ impl Inputs<'_> {
     fn find_pass<'a>(
         &'a self,
         pass: FindPass,
-        key: &LineKey,
+        key: LineKey,
         cracks: &'a Cracks,
     ) -> Result<ReadyFind<'a>, SkipReason> {
-        let mut entries = self.entries(key, key.creases)?;
+        let mut entries = self.entries(key)?;
         match (pass, &cracks.store) {
             (FindPass::Pixels(id), CrackStore::Texture(texture)) => {
                 let ready = self.render(id, &key.find_layout(), &entries)?;
@@ -279,9 +282,12 @@ impl Inputs<'_> {
         };
         if let (Some(_), CrackStore::Buffers(buffers)) = (&cracks.columns, &cracks.store) {
             entries.push(texture_entry(12, &self.tiles()?.blocks));
-            entries.extend(key.bridged.then(|| buffers.planes_entry(copies)));
+            entries.extend(
+                key.contains(LineKey::BRIDGED)
+                    .then(|| buffers.planes_entry(copies)),
+            );
         }
-        if key.object_styles {
+        if key.contains(LineKey::OBJECT_IDS) {
             entries.push(self.ids()?);
         }
         self.render(id, &key.draw_layout(), &entries)
@@ -297,7 +303,10 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let key = self.passes.key.for_strokes();
-        let ids = key.object_styles.then(|| self.ids()).transpose()?;
+        let ids = key
+            .contains(LineKey::OBJECT_IDS)
+            .then(|| self.ids())
+            .transpose()?;
         let ready = self.render(id, &key.strokes_layout(), ids.as_slice())?;
         Ok(Some((ready, strokes)))
     }

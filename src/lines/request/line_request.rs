@@ -13,7 +13,7 @@ use super::{
 use crate::{
     depth::view::ViewUniform,
     lines::{
-        modifiers::{LineAbstraction, LineFocusUniform, LineLayers, SheetUniform},
+        modifiers::{LineFadeUniform, LineLayers, LineSimplification, SheetUniform},
         settings::{BoilUniform, FogUniform, LinesUniform, MapJumps, Outlines, WeightUniform},
     },
 };
@@ -51,12 +51,12 @@ pub(crate) struct LineRequest {
     pub motion: bool,
     /// The fog that lines fade into.
     pub fog: Option<FogUniform>,
-    /// What lines are in focus.
-    pub focus: Option<LineFocusUniform>,
+    /// How they fade with the distance from another one.
+    pub fade: Option<LineFadeUniform>,
     /// How they differ between the depth layers.
     pub layers: Option<LineLayers>,
-    /// How they follow the abstraction of the view.
-    pub abstraction: Option<LineAbstraction>,
+    /// How they are simplified.
+    pub simplification: Option<LineSimplification>,
     /// The sheet that lines are drawn on.
     pub sheet: SheetUniform,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -110,16 +110,16 @@ impl LineRequest {
         self.reach.max(1) + i32::from(!aligned)
     }
 
-    /// Whether lines know the places of objects in the depth map.
-    pub fn reads_places(&self) -> bool {
+    /// Whether the width and opacity of lines depend on the places of objects in the depth map.
+    pub fn weighs_by_objects(&self) -> bool {
         let layers = self.layers.is_some_and(|layers| layers.by_objects);
-        layers || self.abstraction.is_some_and(|a| a.by_objects)
+        self.ids && (layers || self.simplification.is_some_and(|s| s.by_objects))
     }
 
-    /// Whether edges must be stronger where their object is abstract.
-    pub fn abstracts_objects(&self) -> bool {
-        let by_objects = |a: LineAbstraction| a.threshold > 1.0 && a.by_objects;
-        self.ids && self.abstraction.is_some_and(by_objects)
+    /// Whether edges must be stronger where their object is simpler.
+    pub fn finds_by_objects(&self) -> bool {
+        let by_objects = |s: LineSimplification| s.threshold > 1.0 && s.by_objects;
+        self.ids && self.simplification.is_some_and(by_objects)
     }
 
     /// Whether the pixels that own lines are drawn, for the colour of lines.
@@ -198,10 +198,10 @@ impl LineRequest {
             grid: self.grid(),
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
-            focus: self.focus.unwrap_or_default(),
+            fade: self.fade.unwrap_or_default(),
             layers: self.layers.map(LineLayers::uniform).unwrap_or_default(),
-            abstraction: (self.abstraction)
-                .map(|a| a.uniform(self.view.flip != 0))
+            simplification: (self.simplification)
+                .map(LineSimplification::uniform)
                 .unwrap_or_default(),
             boil: self.boil,
             memory: (self.memory)

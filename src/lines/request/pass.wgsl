@@ -4,14 +4,14 @@
 // binding 1 of their group.
 
 #import bevy_comics::depth::view::View
-#import bevy_comics::lines::abstraction::LineAbstraction
 #import bevy_comics::lines::boil::Boil
 #import bevy_comics::lines::edge::{Grid, Lines}
-#import bevy_comics::lines::focus::LineFocus
+#import bevy_comics::lines::fade::LineFade
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::memory::Memory
 #import bevy_comics::lines::layer_lines::LineLayers
 #import bevy_comics::lines::sheet::Sheet
+#import bevy_comics::lines::simplification::LineSimplification
 #import bevy_comics::lines::weight::Weight
 
 struct LinePass {
@@ -20,9 +20,9 @@ struct LinePass {
     grid: Grid,
     weight: Weight,
     fog: Fog,
-    focus: LineFocus,
+    fade: LineFade,
     layers: LineLayers,
-    abstraction: LineAbstraction,
+    simplification: LineSimplification,
     boil: Boil,
     memory: Memory,
     sheet: Sheet,

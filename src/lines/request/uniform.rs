@@ -6,7 +6,7 @@ use super::{grid::Grid, memory::MemoryUniform};
 use crate::{
     depth::view::ViewUniform,
     lines::{
-        modifiers::{LineAbstractionUniform, LineFocusUniform, LineLayersUniform, SheetUniform},
+        modifiers::{LineFadeUniform, LineLayersUniform, LineSimplificationUniform, SheetUniform},
         settings::{BoilUniform, FogUniform, LinesUniform, WeightUniform},
     },
 };
@@ -19,9 +19,9 @@ pub(crate) struct LinePassUniform {
     pub grid: Grid,
     pub weight: WeightUniform,
     pub fog: FogUniform,
-    pub focus: LineFocusUniform,
+    pub fade: LineFadeUniform,
     pub layers: LineLayersUniform,
-    pub abstraction: LineAbstractionUniform,
+    pub simplification: LineSimplificationUniform,
     pub boil: BoilUniform,
     pub memory: MemoryUniform,
     pub sheet: SheetUniform,

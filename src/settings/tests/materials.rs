@@ -185,7 +185,7 @@ fn the_ranges_of_the_material_are_those_that_are_used() {
 fn the_ranges_of_components_are_those_that_are_used() {
     check(OutlineStyle::sanitized);
     check(MeshSections::sanitized);
-    check(ObjectAbstraction::sanitized);
+    check(ObjectSimplification::sanitized);
 }
 
 #[test]

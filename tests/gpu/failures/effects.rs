@@ -63,7 +63,7 @@ macro_rules! kind {
     };
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 8] = [
     kind!(
         "nonsense",
         Needs::empty(),
@@ -74,12 +74,13 @@ const KINDS: [Kind; 9] = [
         Needs::empty(),
         "fn another_name(p: Pixel) -> Pixel { return p; }"
     ),
+    // Called as what the pass defines for multisampled views.
     kind!(
-        "reader",
+        "multisampled",
         Needs::NORMALS.union(Needs::DEPTH),
         "#import bevy_comics::depth::normal::load_normal
         #import bevy_comics::depth::view::load_depth
-        fn reader(p: Pixel) -> Pixel {
+        fn multisampled(p: Pixel) -> Pixel {
             var out = p;
             let pixel = vec2<i32>(p.position);
             let n = load_normal(pixel);
@@ -101,7 +102,6 @@ const KINDS: [Kind; 9] = [
     // Names that are refused.
     kind!("Upper", Needs::empty(), ""),
     kind!("wave2", Needs::empty(), ""),
-    kind!("depth", Needs::empty(), ""),
     kind!("contours", Needs::empty(), ""),
     kind!("partial", Needs::empty(), ""),
 ];
@@ -201,7 +201,6 @@ fn names_that_cannot_work_are_refused() {
         EffectPlugin::<Probe<5>>::default(),
         EffectPlugin::<Probe<6>>::default(),
         EffectPlugin::<Probe<7>>::default(),
-        EffectPlugin::<Probe<8>>::default(),
     ));
     let registry = app.world().resource::<EffectRegistry>();
     let names = |registry: &EffectRegistry| -> Vec<_> {

@@ -104,7 +104,7 @@ fn asked(
     view: &EffectContext,
     missing: Needs,
 ) -> BTreeSet<Definition<'static>> {
-    let name = effect.effect_type().name.to_uppercase();
+    let name = format!("EFFECT_{}", effect.effect_type().name.to_uppercase());
     let mut variants = Variants::default();
     effect.any_variants(view, &mut variants);
     let entry = |part: &str| {

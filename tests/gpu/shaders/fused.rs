@@ -95,7 +95,8 @@ fn read() -> Definitions {
     let modes = effects::all()
         .iter()
         .flat_map(|effect| effect.modes[0].clone());
-    let is_kept = |(name, number): &Definition| number.is_none() && !name.starts_with("SKETCH");
+    let is_kept =
+        |(name, number): &Definition| number.is_none() && !name.starts_with("EFFECT_SKETCH");
     of_pass(&[&modes.filter(is_kept).collect::<Definitions>()])
 }
 
@@ -139,7 +140,7 @@ fn debug_views() -> Vec<Definitions> {
         .iter()
         .filter(|modes| modes.effect.view.is_some());
     let of_effects = of_effects.map(|Modes { effect, modes }| {
-        let view = flag(format!("VIEW_{}", effect.name.to_uppercase()));
+        let view = flag(format!("VIEW_EFFECT_{}", effect.name.to_uppercase()));
         [&[("VIEW_EFFECT", None), view], &modes[0][..]].concat()
     });
     let views: Vec<Definitions> = shared.chain(of_effects).collect();
@@ -210,7 +211,7 @@ fn check_written<'a>(modes: impl Iterator<Item = &'a Definitions>) {
     pairs.extend(modes);
     // A sketch replaces the outlines.
     let has = |pair: &Definitions, name| pair.iter().any(|(own, _)| *own == name);
-    pairs.retain(|pair| !(has(pair, "SKETCH") && has(pair, "OUTLINES")));
+    pairs.retain(|pair| !(has(pair, "EFFECT_SKETCH") && has(pair, "EFFECT_OUTLINES")));
     for mut definitions in pairs {
         definitions.sort_unstable();
         definitions.dedup_by_key(|(name, _)| *name);

@@ -29,7 +29,7 @@ fn finding() -> Vec<Variant> {
         "| VISIBLE_RANGE",
         "| COMPLETED",
         "| OBJECT_STYLES",
-        "| ABSTRACT_LINES | ABSTRACT_LINES OBJECT_DEPTHS",
+        "| SIMPLIFIED_LINES | SIMPLIFIED_LINES OBJECT_DEPTHS",
     ];
     const FAITHFUL: &[&str] = &[
         "| OBLIQUE",
@@ -59,9 +59,9 @@ fn finding() -> Vec<Variant> {
 
 fn found(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let marks = has(&names, "MARKS");
-    let reads_map = has_any(&names, &["FADING", "ABSTRACT_LINES"]);
+    let reads_map = has_any(&names, &["FADING", "SIMPLIFIED_LINES"]);
     names.retain(|name| match *name {
-        "FADING" | "ABSTRACT_LINES" | "OBJECT_DEPTHS" => !marks,
+        "FADING" | "SIMPLIFIED_LINES" | "OBJECT_DEPTHS" => !marks,
         "VISIBLE_RANGE" => reads_map && !marks,
         _ => true,
     });
@@ -169,9 +169,9 @@ fn settling() -> Vec<Variant> {
         "| TAPER_WEIGHT",
         "| BUDGET",
         "| FOG",
-        "| IN_FOCUS",
+        "| DISTANCE_FADE",
         "| IN_LAYERS | IN_LAYERS DEPTH_BORDERS | IN_LAYERS OBJECT_DEPTHS",
-        "| ABSTRACT_CREASES | ABSTRACT_CREASES OBJECT_DEPTHS",
+        "| SIMPLIFIED_CREASES | SIMPLIFIED_CREASES OBJECT_DEPTHS",
         "| VISIBLE_RANGE",
     ];
     pairs("lines/link/settle.wgsl", LISTS, settled)
@@ -179,7 +179,7 @@ fn settling() -> Vec<Variant> {
 
 fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let smooth = has(&names, "SMOOTH");
-    let on_map = ["PERSPECTIVE_WEIGHT", "IN_LAYERS", "ABSTRACT_CREASES"];
+    let on_map = ["PERSPECTIVE_WEIGHT", "IN_LAYERS", "SIMPLIFIED_CREASES"];
     let reads_map = has_any(&names, &on_map);
     names.retain(|name| match *name {
         "NIB_WEIGHT" => smooth,
@@ -188,7 +188,7 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
     });
     let surface = has_any(&names, &["LIGHT_WEIGHT", "WIDTH_MAP"]);
     let along = ["KIND_WEIGHT", "NIB_WEIGHT", "TAPER_WEIGHT", "BUDGET"];
-    let around = ["FOG", "IN_FOCUS"];
+    let around = ["FOG", "DISTANCE_FADE"];
     let weight = surface || reads_map || has_any(&names, &along) || has_any(&names, &around);
     if surface {
         names.push("SURFACE_WEIGHT");
@@ -216,7 +216,7 @@ fn drawing() -> Vec<Variant> {
         "| OBJECT_STYLES",
         "| SURFACE | SURFACE INWARD",
         "| BOIL",
-        "| TAPER",
+        "| TAPER_WEIGHT",
         "| SPREAD",
         "| STREAKS",
     ];

@@ -35,7 +35,7 @@ fn divided() -> Vec<Definitions> {
 }
 
 fn passes_of(Modes { effect, modes }: &Modes) -> Vec<Definitions> {
-    let name = effect.name.to_uppercase();
+    let name = format!("EFFECT_{}", effect.name.to_uppercase());
     let mut all = fewest(modes.clone());
     let reads = |mode: &Definitions, what| mode.contains(&(what, None));
     for mode in all.clone() {
@@ -79,12 +79,13 @@ fn reaches(pixels: usize) -> Definitions {
 /// Passes that are blended over the picture: all of their effects draw over it.
 fn overlays() -> Vec<Definitions> {
     const LISTS: &[&str] = &[
-        "OUTLINES LINES | CONTOURS | OUTLINES LINES CONTOURS \
-         | FOCUS | FOCUS OUTLINES LINES CONTOURS",
-        "CONTOURS_OPERATOR=0 | CONTOURS_OPERATOR=1 | CONTOURS_OPERATOR=2 | CONTOURS_OPERATOR=3",
-        "| CONTOURS_WHOLE | CONTOURS_WHOLE CONTOURS_SINGLE_RING",
-        "| CONTOURS_STEADY",
-        "FOCUS_PARALLEL=0 | FOCUS_PARALLEL=1",
+        "EFFECT_OUTLINES LINES | EFFECT_CONTOURS | EFFECT_OUTLINES LINES EFFECT_CONTOURS \
+         | EFFECT_FOCUS | EFFECT_FOCUS EFFECT_OUTLINES LINES EFFECT_CONTOURS",
+        "EFFECT_CONTOURS_OPERATOR=0 | EFFECT_CONTOURS_OPERATOR=1 | EFFECT_CONTOURS_OPERATOR=2 \
+         | EFFECT_CONTOURS_OPERATOR=3",
+        "| EFFECT_CONTOURS_WHOLE | EFFECT_CONTOURS_WHOLE EFFECT_CONTOURS_SINGLE_RING",
+        "| EFFECT_CONTOURS_STEADY",
+        "EFFECT_FOCUS_PARALLEL=0 | EFFECT_FOCUS_PARALLEL=1",
         // The styles of lines, and objects that colour effects leave alone.
         "| OBJECT_STYLES | OBJECT_STYLES OBJECT_IDS",
         "| INSIDE",
@@ -100,21 +101,21 @@ fn overlays() -> Vec<Definitions> {
 
 fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let [contours, focus, lines, ids] =
-        ["CONTOURS", "FOCUS", "LINES", "OBJECT_IDS"].map(|name| has(&names, name));
+        ["EFFECT_CONTOURS", "EFFECT_FOCUS", "LINES", "OBJECT_IDS"].map(|name| has(&names, name));
     names.retain(|name| match *name {
         "SAME_SIZE" | "MULTISAMPLED" => contours || ids,
         "OBLIQUE" | "VISIBLE_RANGE" => contours,
         "OBJECT_STYLES" => lines || ids,
-        _ if name.starts_with("CONTOURS_") || name.starts_with("MAP_FLAGS") => contours,
-        _ if name.starts_with("FOCUS_") => focus,
+        _ if name.starts_with("EFFECT_CONTOURS_") || name.starts_with("MAP_FLAGS") => contours,
+        _ if name.starts_with("EFFECT_FOCUS_") => focus,
         _ => true,
     });
     names.push("OVERLAY");
     if contours {
-        names.extend(["MAP", "DEPTH", "CONTOURS_FAITHFUL=0"]);
+        names.extend(["MAP", "DEPTH", "EFFECT_CONTOURS_FAITHFUL=0"]);
     }
     if focus {
-        names.push("FOCUS_STYLE=4");
+        names.push("EFFECT_FOCUS_STYLE=4");
     }
     // Of these effects, the focus alone is one that changes colours.
     if ids && focus {
@@ -126,10 +127,11 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
 /// All pixels, before tiles with all effects: without those effects that change only tiles.
 fn bases() -> Vec<Definitions> {
     const LISTS: &[&str] = &[
-        "SKETCH | SKETCH CONTOURS | CONTOURS TONE_BANDS | CONTOURS OUTLINES",
+        "EFFECT_SKETCH | EFFECT_SKETCH EFFECT_CONTOURS | EFFECT_CONTOURS EFFECT_TONE_BANDS \
+         | EFFECT_CONTOURS EFFECT_OUTLINES",
         // An effect of a game may not know how far it reads lines.
         "| WITHOUT_LINES",
-        "| SKETCH_FADES",
+        "| EFFECT_SKETCH_FADES",
         "| OBJECT_STYLES",
         "| LINE_OWNERS | LINE_OWNERS IN_LAYERS | LINE_OWNERS IN_LAYERS DEPTH_BORDERS",
         "| CONTINUED",
@@ -147,10 +149,10 @@ fn bases() -> Vec<Definitions> {
 
 fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let [contours, outlines, sketch] =
-        ["CONTOURS", "OUTLINES", "SKETCH"].map(|name| has(&names, name));
+        ["EFFECT_CONTOURS", "EFFECT_OUTLINES", "EFFECT_SKETCH"].map(|name| has(&names, name));
     let lines = outlines || sketch;
     names.retain(|name| match *name {
-        "SKETCH_FADES" => sketch,
+        "EFFECT_SKETCH_FADES" => sketch,
         "OBJECT_STYLES" | "LINE_OWNERS" | "IN_LAYERS" | "DEPTH_BORDERS" => lines,
         // Jumps of the depth map are looked for where it has the pixels of the view.
         "MULTISAMPLED" => !contours,
@@ -163,20 +165,25 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
         names.push("LINES_ANYWHERE");
     }
     if outlines {
-        names.push("WITHOUT_OUTLINES");
+        names.push("WITHOUT_EFFECT_OUTLINES");
     }
     if contours {
-        names.extend(["WITHOUT_CONTOURS", "MAP", "DEPTH", "SAME_SIZE"]);
-        names.extend(["CONTOURS_OPERATOR=1", "CONTOURS_FAITHFUL=0"]);
+        names.extend(["WITHOUT_EFFECT_CONTOURS", "MAP", "DEPTH", "SAME_SIZE"]);
+        names.extend(["EFFECT_CONTOURS_OPERATOR=1", "EFFECT_CONTOURS_FAITHFUL=0"]);
     } else {
         // Without jumps, tiles save nothing but the search for lines.
         names.push("WITHOUT_LINES");
     }
-    if has(&names, "TONE_BANDS") {
-        names.extend(["LIGHTNESS_CHANGE", "TONE_BANDS_FAITHFUL=0"]);
+    if has(&names, "EFFECT_TONE_BANDS") {
+        names.extend(["LIGHTNESS_CHANGE", "EFFECT_TONE_BANDS_FAITHFUL=0"]);
     }
     if has(&names, "IN_LAYERS") {
-        names.extend(["DEPTH_LAYERS", "DEPTH_LAYERS_BANDS=0", "MAP", "DEPTH"]);
+        names.extend([
+            "EFFECT_DEPTH_LAYERS",
+            "EFFECT_DEPTH_LAYERS_BANDS=0",
+            "MAP",
+            "DEPTH",
+        ]);
     }
     if !has(&names, "DEPTH") {
         names.retain(|name| !matches!(*name, "SAME_SIZE" | "MULTISAMPLED" | "OBLIQUE"));

@@ -30,6 +30,14 @@ pub fn band_tone(levels: f64, softness: f64, y: f64, change: f64) -> f64 {
     (below + 0.5 + passed) / levels
 }
 
+/// Bands that have split `splits` times. `step`: the width of a step in lightness.
+pub fn split_bands(levels: f64, splits: f64, y: f64, step: f64) -> f64 {
+    let whole = splits.floor();
+    let [fewer, more] =
+        [0.0, 1.0].map(|one| band_tone(levels * (whole + one).exp2(), step, y, 1.0));
+    mix(fewer, more, smoothstep(0.0, 1.0, splits - whole))
+}
+
 /// The colour at the luminance `target`, mixed with grey as far as the display needs
 /// it.
 fn with_luminance(linear: Rgb, target: f64) -> Rgb {

@@ -1,4 +1,4 @@
-//! How lines fade out of focus.
+//! How lines fade with the distance from another one.
 
 use bevy::{math::Vec2, render::render_resource::ShaderType};
 
@@ -8,11 +8,11 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 /// in an orthographic view their difference, as a fraction of
 /// [`EffectContext::depth_reference`](crate::effect::EffectContext::depth_reference).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineFocus {
-    /// Distance of the focus in world units; `None`: that of what the pixel in the middle of the
-    /// view shows.
+pub struct LineFade {
+    /// The distance at which lines are whole, in world units; `None`: that of what the pixel in the
+    /// middle of the view shows.
     pub distance: Option<f32>,
-    /// How far from the focus lines are whole: natural logarithm of the ratio, or the fraction.
+    /// How far from there lines are whole: natural logarithm of the ratio, or the fraction.
     pub clear: f32,
     /// How far behind that the least is left of them; as `clear`, above 0.
     pub ramp: f32,
@@ -20,11 +20,11 @@ pub struct LineFocus {
     pub amount: f32,
 }
 
-impl LineFocus {
+impl LineFade {
     /// As shaders take it. `axis`: see
     /// [`EffectContext::depth_axis`](crate::effect::EffectContext::depth_axis).
-    pub(crate) fn uniform(self, axis: Vec2, reference: Option<f32>) -> LineFocusUniform {
-        LineFocusUniform {
+    pub(crate) fn uniform(self, axis: Vec2, reference: Option<f32>) -> LineFadeUniform {
+        LineFadeUniform {
             axis,
             distance: self.distance.unwrap_or(1.0).max(1e-9),
             at_centre: u32::from(self.distance.is_none()),
@@ -36,9 +36,9 @@ impl LineFocus {
     }
 }
 
-/// `LineFocus` of `focus.wgsl`.
+/// `LineFade` of `fade.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct LineFocusUniform {
+pub(crate) struct LineFadeUniform {
     axis: Vec2,
     distance: f32,
     at_centre: u32,

@@ -1,4 +1,4 @@
-//! Objects that are more or less abstract than their distance makes them.
+//! Objects that are simpler or more detailed than their distance makes them.
 
 use bevy::{
     ecs::{
@@ -15,30 +15,30 @@ use bevy::{
 use super::inherit::inherit;
 use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
-/// Makes this object more or less abstract than the camera's [`Abstraction`](crate::Abstraction)
-/// makes it by distance: a hero with all details among simple figures, or a crowd that is simple
-/// near by too.
+/// Makes this object simpler or more detailed than effects make it by distance: a hero with all
+/// details among simple figures, or a crowd that is simple near by too.
 ///
-/// Bands, strokes, saturation and lines follow it. It needs an `Abstraction` with
-/// [`Granularity::Object`](crate::effects::Granularity::Object), which is the default. The meshes of an
-/// [`OutlineGroup`](crate::OutlineGroup) are one object: if several of them have this component,
-/// any of them counts.
+/// Effects follow it that simplify whole objects; of this crate's,
+/// [`Abstraction`](crate::Abstraction) with
+/// [`Granularity::Object`](crate::effects::Granularity::Object), which is the default. The meshes
+/// of an [`OutlineGroup`](crate::OutlineGroup) are one object: if several of them have this
+/// component, any of them counts.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
-pub struct ObjectAbstraction {
-    /// The abstraction of the object at every distance: 0 is all detail, 1 is none. `None`: that
+pub struct ObjectSimplification {
+    /// The simplification of the object at every distance: 0 is all detail, 1 is none. `None`: that
     /// of its distance. Range 0 to 1, default `None`.
     #[reflect(@FieldRange::FRACTION)]
     pub level: Option<f32>,
     /// Added to it; the sum is limited to 0 and 1. Range -1 to 1, default 0.
     #[reflect(@FieldRange::linear(-1.0, 1.0))]
     pub offset: f32,
-    /// Applies to all descendants as well, except for those with an `ObjectAbstraction` of their
+    /// Applies to all descendants as well, except for those with an `ObjectSimplification` of their
     /// own. Default: `true`.
     pub inherit: bool,
 }
 
-impl Default for ObjectAbstraction {
+impl Default for ObjectSimplification {
     fn default() -> Self {
         Self {
             level: None,
@@ -48,8 +48,8 @@ impl Default for ObjectAbstraction {
     }
 }
 
-impl ObjectAbstraction {
-    /// For an object and its descendants: the abstraction is `level` at every distance.
+impl ObjectSimplification {
+    /// For an object and its descendants: the simplification is `level` at every distance.
     pub const fn fixed(level: f32) -> Self {
         Self {
             level: Some(level),
@@ -68,7 +68,7 @@ impl ObjectAbstraction {
         }
     }
 
-    /// The factor of the abstraction by distance, and what is added to it.
+    /// The factor of the simplification by distance, and what is added to it.
     fn dial(self) -> Vec2 {
         let s = self.sanitized();
         match s.level {
@@ -78,19 +78,19 @@ impl ObjectAbstraction {
     }
 }
 
-/// The dial of an object without an [`ObjectAbstraction`].
+/// The dial of an object without an [`ObjectSimplification`].
 pub(super) const BY_DISTANCE: Vec2 = Vec2::X;
 
 /// The dials of the meshes that have one of their own.
 pub(super) fn dials(
-    set: &Query<(Entity, &ObjectAbstraction)>,
+    set: &Query<(Entity, &ObjectSimplification)>,
     children: &Query<&Children>,
 ) -> EntityHashMap<Vec2> {
     let mut found = EntityHashMap::default();
-    for (entity, abstraction) in set {
+    for (entity, simplification) in set {
         let own = |child| set.contains(child);
-        let said = (entity, abstraction.dial());
-        inherit(&mut found, said, abstraction.inherit, children, own);
+        let said = (entity, simplification.dial());
+        inherit(&mut found, said, simplification.inherit, children, own);
     }
     found
 }
@@ -102,14 +102,14 @@ mod tests {
     #[test]
     fn dials_are_within_their_ranges() {
         let of = |level, offset| {
-            ObjectAbstraction {
+            ObjectSimplification {
                 level,
                 offset,
                 inherit: false,
             }
             .dial()
         };
-        assert_eq!(ObjectAbstraction::default().dial(), BY_DISTANCE);
+        assert_eq!(ObjectSimplification::default().dial(), BY_DISTANCE);
         assert_eq!(of(None, 0.25), Vec2::new(1.0, 0.25));
         assert_eq!(of(Some(0.5), -0.25), Vec2::new(0.0, 0.25));
         assert_eq!(of(Some(7.0), -9.0), Vec2::new(0.0, 0.0));
