@@ -9,7 +9,7 @@ use bevy::{
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
         component::Component,
-        entity::{Entity, EntityHashMap},
+        entity::{Entity, EntityHashMap, EntityHashSet},
         hierarchy::Children,
         lifecycle::RemovedComponents,
         query::{Changed, Or, With, Without},
@@ -96,10 +96,12 @@ impl Bounds {
     }
 }
 
-/// The id had its object before; is new; is that of several objects.
+/// The object had its id in the frame before.
 const KNOWN: u32 = 0;
+/// The object has got its id in this frame.
 const FRESH: u32 = 1;
-const SHARED: u32 = 2;
+/// Several objects have the id, or the object has no box.
+const NOWHERE: u32 = 2;
 
 /// The boxes of all objects, while some view asks for their places.
 #[derive(Resource, Default)]
@@ -118,8 +120,8 @@ struct ObjectBounds {
 }
 
 impl ObjectBounds {
-    /// Sets the box of a mesh, or that it has none.
-    fn set(&mut self, mesh: Entity, found: Option<(Entity, Bounds)>) {
+    /// Sets the box of a mesh, or that it has none. Notes the objects whose boxes follow.
+    fn set(&mut self, mesh: Entity, found: Option<(Entity, Bounds)>, touched: &mut EntityHashSet) {
         let before = match found {
             Some(found) => self.meshes.insert(mesh, found),
             None => self.meshes.remove(&mesh),
@@ -127,36 +129,33 @@ impl ObjectBounds {
         if before == found {
             return;
         }
-        self.changed = true;
-        if let Some((object, bounds)) = found {
-            let (meshes, around) = self.objects.entry(object).or_insert((Vec::new(), bounds));
-            if !meshes.contains(&mesh) {
-                meshes.push(mesh);
-            }
-            if meshes.len() == 1 {
-                *around = bounds;
-            } else {
-                self.unite(object);
-            }
+        let [old, new] = [before, found].map(|known| known.map(|(object, _)| object));
+        touched.extend(old.into_iter().chain(new));
+        if old == new {
+            return;
         }
-        if let Some((object, _)) = before.filter(|old| found.is_none_or(|new| new.0 != old.0)) {
-            if let Some((meshes, _)) = self.objects.get_mut(&object) {
-                meshes.retain(|other| *other != mesh);
-            }
-            self.unite(object);
+        if let Some((meshes, _)) = old.and_then(|object| self.objects.get_mut(&object)) {
+            meshes.retain(|other| *other != mesh);
+        }
+        if let Some((object, bounds)) = found {
+            let (meshes, _) = self.objects.entry(object).or_insert((Vec::new(), bounds));
+            meshes.push(mesh);
         }
     }
 
-    /// Finds the box around the meshes of an object anew.
-    fn unite(&mut self, object: Entity) {
-        let Some((meshes, around)) = self.objects.get_mut(&object) else {
-            return;
-        };
-        let boxes = meshes.iter().filter_map(|mesh| self.meshes.get(mesh));
-        match boxes.map(|(_, bounds)| *bounds).reduce(Bounds::with) {
-            Some(bounds) => *around = bounds,
-            None => {
-                self.objects.remove(&object);
+    /// Finds the boxes of objects anew.
+    fn unite(&mut self, touched: EntityHashSet) {
+        self.changed |= !touched.is_empty();
+        for object in touched {
+            let Some((meshes, around)) = self.objects.get_mut(&object) else {
+                continue;
+            };
+            let boxes = meshes.iter().filter_map(|mesh| self.meshes.get(mesh));
+            match boxes.map(|(_, bounds)| *bounds).reduce(Bounds::with) {
+                Some(bounds) => *around = bounds,
+                None => {
+                    self.objects.remove(&object);
+                }
             }
         }
     }
@@ -175,7 +174,10 @@ impl ObjectBounds {
 /// Meshes with their boxes and places.
 type Boxed = (Entity, &'static Aabb, &'static GlobalTransform);
 
-type OtherBox = (With<Mesh3d>, Or<(Changed<GlobalTransform>, Changed<Aabb>)>);
+type OtherBox = (
+    With<Mesh3d>,
+    Or<(Changed<GlobalTransform>, Changed<Aabb>, Changed<Mesh3d>)>,
+);
 
 fn extract_bounds(
     views: Query<(), With<ObjectDepthRequest>>,
@@ -204,22 +206,24 @@ fn extract_bounds(
         let bounds = Bounds::of(aabb, at)?;
         Some((groups.object(mesh), bounds))
     };
+    let mut touched = EntityHashSet::default();
     if !bounds.asked || groups.is_changed() {
         bounds.asked = true;
-        bounds.changed = true;
         bounds.meshes.clear();
         bounds.objects.clear();
+        bounds.changed = true;
         for mesh in &meshes {
-            bounds.set(mesh.0, found(mesh));
+            bounds.set(mesh.0, found(mesh), &mut touched);
         }
     } else {
         for mesh in gone.into_iter().filter(|mesh| !meshes.contains(*mesh)) {
-            bounds.set(mesh, None);
+            bounds.set(mesh, None, &mut touched);
         }
         for mesh in &changed {
-            bounds.set(mesh.0, found(mesh));
+            bounds.set(mesh.0, found(mesh), &mut touched);
         }
     }
+    bounds.unite(touched);
     let dials = dials(&dialled, &children).into_iter();
     let dials = dials.filter_map(|(mesh, dial)| Some((bounds.meshes.get(&mesh)?.0, dial)));
     let dials = dials.collect();
@@ -322,22 +326,25 @@ fn prepare_places(
     }
     let bounds = &mut *bounds;
     if std::mem::take(&mut bounds.changed) || ids.are_new() || bounds.buffer.buffer().is_none() {
-        let found = ids.of_objects().filter_map(|(object, id, is_new)| {
-            let (_, found) = bounds.objects.get(&object)?;
-            Some(BoundsUniform {
+        let nowhere = |id| BoundsUniform {
+            id: u32::from(id),
+            state: NOWHERE,
+            ..BoundsUniform::default()
+        };
+        let found = ids.of_objects().map(|(object, id, is_new)| {
+            let Some((_, found)) = bounds.objects.get(&object) else {
+                return nowhere(id);
+            };
+            BoundsUniform {
                 centre: found.low.midpoint(found.high),
                 id: u32::from(id),
                 half: 0.5 * (found.high - found.low),
                 state: if is_new { FRESH } else { KNOWN },
                 dial: bounds.dials.get(&object).copied().unwrap_or(BY_DISTANCE),
                 ..BoundsUniform::default()
-            })
+            }
         });
-        let shared = ids.shared().map(|id| BoundsUniform {
-            id: u32::from(id),
-            state: SHARED,
-            ..BoundsUniform::default()
-        });
+        let shared = ids.shared().map(nowhere);
         let mut found: Vec<_> = found.chain(shared).collect();
         // A buffer is never empty. The id 0 is left out.
         found.push(BoundsUniform::default());

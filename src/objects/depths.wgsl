@@ -21,7 +21,8 @@ struct Bounds {
     centre: vec3<f32>,
     id: u32,
     half: vec3<f32>,
-    // 0: it had the id before; 1: the id is new; 2: several objects have it, so there is no place.
+    // 0: it had the id before; 1: the id is new; 2: there is no place, because several objects have
+    // the id, or the object has no box.
     state: u32,
     // Its simplification: a factor of that by distance, and what is added.
     dial: vec2<f32>,

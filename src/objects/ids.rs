@@ -14,6 +14,7 @@ use bevy::{
     },
     mesh::Mesh3d,
     pbr::MeshPipelineKey,
+    platform::collections::HashSet,
     render::{
         camera::DirtySpecializations,
         render_resource::TextureUsages,
@@ -203,10 +204,11 @@ impl Queue<'_, '_> {
             for mesh in dirty.iter_to_dequeue(view, class).chain(&changed.0) {
                 self.phase.remove(*mesh, &mut self.records.ids);
             }
-            for (_, mesh) in dirty.iter_to_queue(view, class, &pending) {
+            for (_, mesh) in dirty.iter_to_queue(view, class, &HashSet::default()) {
                 self.add(*mesh);
             }
-            for mesh in changed.0.iter().filter(|mesh| is_visible(class, **mesh)) {
+            let others = changed.0.iter().chain(&pending);
+            for mesh in others.filter(|mesh| is_visible(class, **mesh)) {
                 self.add(*mesh);
             }
         }
@@ -258,7 +260,7 @@ impl Queue<'_, '_> {
             }
         }
         if let Err(Missing::NotLoaded) = found {
-            self.phase.pending.insert((Entity::PLACEHOLDER, mesh));
+            self.phase.pending.insert(mesh);
         }
     }
 }

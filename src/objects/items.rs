@@ -142,6 +142,8 @@ pub(super) struct DrawnMesh<'a> {
     pub mesh: &'a RenderMesh,
     pub material: UntypedAssetId,
     pub properties: &'a Arc<MaterialProperties>,
+    /// The group of bindings that the material is in. The mesh's own note of it may be older.
+    group: u32,
     lightmapped: bool,
 }
 
@@ -180,11 +182,13 @@ impl DrawnMeshes<'_> {
         let found = || {
             let instance = self.instances.render_mesh_queue_data(entity)?;
             let material = self.material_instances.instances.get(&entity)?.asset_id;
+            let prepared = self.materials.get(material)?;
             Some(DrawnMesh {
+                group: prepared.binding.group.0,
+                properties: &prepared.properties,
                 mesh: self.meshes.get(instance.mesh_asset_id())?,
                 instance,
                 material,
-                properties: &self.materials.get(material)?.properties,
                 lightmapped: self.lightmaps.has(entity),
             })
         };
@@ -210,7 +214,7 @@ impl DrawnMeshes<'_> {
             layer,
             pipeline,
             draw_function: draw_function(&self.draw_functions, uses_material),
-            material: uses_material.then(|| drawn.instance.material_bindings_index().group.0),
+            material: uses_material.then_some(drawn.group),
             mesh: drawn.instance.mesh_asset_id(),
             skinned: self.skins.skin_byte_offset(entity).is_some(),
             alone: alone.then_some(entity),

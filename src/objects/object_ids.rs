@@ -26,8 +26,9 @@ use bevy::{
 ///
 /// An object has an id while a view with ids sees one of its meshes, and keeps it afterwards until
 /// another object needs it: ids are given away again in the order in which they became free, at
-/// least [`REST`] frames later. While views see more than 65535 objects, the others share ids, and
-/// there are no [object edges](crate::lines::ObjectEdges) between those with the same one.
+/// least [`REST`] frames later if there are others. While views see more than 65535 objects, the
+/// others share ids, and there are no [object edges](crate::lines::ObjectEdges) between those with
+/// the same one.
 #[derive(Resource, Debug, Default)]
 pub struct ObjectIds {
     ids: EntityHashMap<u16>,
@@ -76,7 +77,7 @@ impl ObjectIds {
         self.slots.is_empty()
     }
 
-    /// The objects in view that have an id alone, and whether it is new in this frame.
+    /// The objects in view that have an id to themselves, and whether it is new in this frame.
     pub(super) fn of_objects(&self) -> impl Iterator<Item = (Entity, u16, bool)> {
         let alone = self.slots.iter().zip(1..=u16::MAX);
         alone
@@ -123,6 +124,14 @@ impl ObjectIds {
             slot.freed = self.frame;
             self.free.push_back((id, self.frame));
         }
+        // Objects that leave and come back leave their places in the queue behind.
+        if self.free.len() > 2 * self.slots.len() + 64 {
+            let slots = &self.slots;
+            self.free.retain(|(id, freed)| {
+                let slot = &slots[usize::from(*id) - 1];
+                slot.meshes == 0 && slot.freed == *freed
+            });
+        }
     }
 
     /// An id for an object without one.
@@ -134,12 +143,13 @@ impl ObjectIds {
             since: self.frame,
             shared: false,
         };
+        let is_full = self.slots.len() == usize::from(u16::MAX);
         while let Some((id, freed)) = self.free.front().copied() {
             let old = &mut self.slots[usize::from(id) - 1];
             if old.meshes > 0 || old.freed != freed {
                 // Its object has come back.
                 self.free.pop_front();
-            } else if self.frame.wrapping_sub(freed) < REST {
+            } else if self.frame.wrapping_sub(freed) < REST && !is_full {
                 break;
             } else {
                 self.free.pop_front();
@@ -202,12 +212,16 @@ mod tests {
             }
         }
         assert!(ids.len() <= 5 * (2 + REST as usize) + 5, "{}", ids.len());
-        // One that comes back has its own.
+        assert!(ids.free.len() <= 2 * ids.len() + 65, "{}", ids.free.len());
+        // One that leaves and comes back has its own, and the queue does not grow.
         let last = object(999 * 5);
         let id = ids.get(last).expect("seen");
-        ids.take(id);
-        ids.frame += 10;
-        assert_eq!(ids.give(last), id);
+        for _ in 0..10_000 {
+            ids.take(id);
+            ids.frame += 10;
+            assert_eq!(ids.give(last), id);
+        }
+        assert!(ids.free.len() <= 2 * ids.len() + 65, "{}", ids.free.len());
         assert!(ids.of_objects().any(|found| found == (last, id, false)));
     }
 
@@ -218,7 +232,17 @@ mod tests {
         assert!(all.iter().all(|id| *id > 0));
         let alone = ids.of_objects().count();
         assert!(alone >= 65_535 - (70_000 - 65_535), "{alone}");
+        // A cut to as many others: none has to share.
         for id in all {
+            ids.take(id);
+        }
+        for index in 100_000..165_535 {
+            ids.give(object(index));
+        }
+        assert_eq!(ids.of_objects().count(), 65_535);
+        assert_eq!(ids.shared().count(), 0);
+        for index in 100_000..165_535 {
+            let id = ids.get(object(index)).expect("given");
             ids.take(id);
         }
         assert!(ids.slots.iter().all(|slot| slot.meshes == 0));

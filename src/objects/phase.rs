@@ -16,7 +16,7 @@ use bevy::{
             PhaseItemExtraIndex, TrackedRenderPass,
         },
         render_resource::{BindGroup, CachedRenderPipelineId},
-        sync_world::{MainEntity, MainEntityHashMap},
+        sync_world::{MainEntity, MainEntityHashMap, MainEntityHashSet},
         view::RetainedViewEntity,
     },
 };
@@ -149,7 +149,7 @@ pub(crate) struct ObjectIdPhase {
     /// The contents that a mesh is in: of its ids or its own depth, and of its mark.
     places: MainEntityHashMap<[Option<u32>; 2]>,
     /// Meshes whose assets have not loaded.
-    pub pending: HashSet<(Entity, MainEntity)>,
+    pub pending: MainEntityHashSet,
     /// Whether draw calls and buffers have yet to follow the bins.
     pub changed: bool,
     /// The draw calls of this frame.

@@ -97,8 +97,6 @@ fn add_systems(render_app: &mut SubApp) {
             (expand_instances, draw_object_ids, count_ids)
                 .chain()
                 .after(Core3dSystems::Prepass)
-                // With occlusion culling, it writes what indirect draws read.
-                .after(bevy::pbr::main_build_indirect_parameters)
                 .before(ComicsSystems::DepthRange)
                 .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),

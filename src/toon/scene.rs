@@ -33,6 +33,9 @@ use super::{MaterialName, ToonLight, ToonMaterial, ToonShading, ToonShadingHandl
 /// component restores the standard materials. If several ancestors of an entity have
 /// the component, the nearest one applies.
 ///
+/// Scenes with equal settings share copies, so that their meshes are drawn together: an edit of the
+/// `ToonMaterial` of one mesh is an edit of all. A [`ToonShadingHandle`] changes one mesh alone.
+///
 /// The lighting of a mesh is that of the first of these that there is and that has loaded:
 ///
 /// 1. the [`ToonShadingHandle`] of the mesh;
@@ -114,8 +117,10 @@ impl Settings {
 }
 
 /// A scene as its meshes were last converted.
+#[derive(PartialEq)]
 struct Root {
     settings: usize,
+    shading: Option<Handle<ToonShading>>,
     overrides: HashMap<MaterialName, Handle<ToonShading>>,
 }
 
@@ -160,43 +165,52 @@ impl Copies {
 
     /// One scene fewer has the settings. Copies of settings that no scene has are dropped.
     fn leave(&mut self, at: usize) {
-        self.settings[at].1 -= 1;
-        if self.settings[at].1 == 0 {
+        let (settings, users) = &mut self.settings[at];
+        *users -= 1;
+        if *users == 0 {
+            *settings = Settings::of(&ToonScene::default());
             self.copies.retain(|(settings, ..), _| *settings != at);
+        }
+    }
+
+    /// Changes settings in place where all scenes that have them say the same new ones: so their
+    /// copies only change.
+    fn rewrite<'a>(&mut self, tuned: impl Iterator<Item = (Entity, &'a ToonScene)>) {
+        let mut said: HashMap<usize, (Settings, usize)> = HashMap::default();
+        for (root, scene) in tuned {
+            if let Some(known) = self.roots.get(&root) {
+                let settings = Settings::of(scene);
+                let same = said.entry(known.settings).or_insert((settings.clone(), 0));
+                same.1 += usize::from(same.0 == settings);
+            }
+        }
+        for (at, (settings, scenes)) in said {
+            if scenes == self.settings[at].1 && !self.is_known(&settings) {
+                self.settings[at].0 = settings;
+                self.changed.push(at);
+            }
         }
     }
 
     /// Notes what a scene says; whether its meshes may have other copies now.
     fn update(&mut self, root: Entity, scene: &ToonScene) -> bool {
         let settings = Settings::of(scene);
-        let before = self.roots.get(&root);
-        let same_shadings = before.is_some_and(|root| {
-            root.overrides == scene.overrides
-                && self.settings[root.settings].0.shading == settings.shading
-        });
-        let before = before.map(|root| root.settings);
+        let before = self.roots.get(&root).map(|root| root.settings);
         let at = match before {
             Some(at) if self.settings[at].0 == settings => at,
-            // The only scene with its settings keeps their place, so that its copies only change.
-            Some(at) if self.settings[at].1 == 1 && !self.is_known(&settings) => {
-                self.settings[at].0 = settings;
-                self.changed.push(at);
-                at
-            }
-            Some(at) => {
-                let new = self.enter(settings);
-                self.leave(at);
-                new
-            }
-            None => self.enter(settings),
+            _ => self.enter(settings),
         };
-        let overrides = scene.overrides.clone();
         let new = Root {
             settings: at,
-            overrides,
+            shading: scene.shading.clone(),
+            overrides: scene.overrides.clone(),
         };
-        self.roots.insert(root, new);
-        !same_shadings || before != Some(at)
+        let old = self.roots.insert(root, new);
+        let is_other = old.as_ref() != self.roots.get(&root);
+        if let Some(before) = before.filter(|before| *before != at) {
+            self.leave(before);
+        }
+        is_other
     }
 
     fn is_known(&self, settings: &Settings) -> bool {
@@ -282,9 +296,14 @@ pub(super) fn find_meshes(
     let changes = &mut *changes;
     changes.meshes.clear();
     copies.changed.clear();
+    if scenes.is_empty() && copies.roots.is_empty() {
+        changes.subtrees.clear();
+        return;
+    }
     for root in removed.read().filter(|root| !scenes.contains(*root)) {
         copies.forget(root);
     }
+    copies.rewrite(tuned.iter());
     for (root, scene) in &tuned {
         if copies.update(root, scene) {
             changes.subtrees.insert(root);
@@ -480,11 +499,18 @@ pub(super) fn follow_materials(
     mut shadings: MessageReader<AssetEvent<ToonShading>>,
     mut materials: Materials,
 ) {
-    let standard = standard.read().filter_map(|event| match event {
-        AssetEvent::Modified { id } => Some(*id),
-        _ => None,
-    });
-    let standard: HashSet<_> = standard.collect();
+    let (mut modified, mut removed) = (HashSet::new(), HashSet::new());
+    for event in standard.read() {
+        match event {
+            AssetEvent::Modified { id } => modified.insert(*id),
+            AssetEvent::Removed { id } => removed.insert(*id),
+            _ => false,
+        };
+    }
+    if !removed.is_empty() {
+        // No mesh has them any more.
+        (materials.copies.copies).retain(|(_, original, _), _| !removed.contains(original));
+    }
     let shadings: HashSet<_> = shadings.read().filter_map(shading::changed).collect();
     let Copies {
         copies,
@@ -492,14 +518,14 @@ pub(super) fn follow_materials(
         changed,
         ..
     } = &*materials.copies;
-    if standard.is_empty() && shadings.is_empty() && changed.is_empty() {
+    if modified.is_empty() && shadings.is_empty() && changed.is_empty() {
         return;
     }
     let is_changed =
         |shading: Option<AssetId<ToonShading>>| shading.is_some_and(|id| shadings.contains(&id));
     let follows = |(at, original, shading): CopyKey| {
         changed.contains(&at)
-            || standard.contains(&original)
+            || modified.contains(&original)
             || is_changed(shading)
             || is_changed(settings[at].0.shading.as_ref().map(Handle::id))
     };

@@ -138,8 +138,6 @@ fn children_share_the_outline_of_their_parent() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The outline lies over the effects of the camera, in sub-viewports too, and the effects are
-/// the same beside it.
 /// A mark has a layer of its own: id, style and sections of its object stay in the texture of ids.
 #[test]
 fn a_selected_object_keeps_its_id_and_its_style() {
@@ -160,6 +158,8 @@ fn a_selected_object_keeps_its_id_and_its_style() {
     }
 }
 
+/// The outline lies over the effects of the camera, in sub-viewports too, and the effects are
+/// the same beside it.
 #[test]
 fn the_outline_lies_over_the_effects() {
     let (mut small, square, _) = scene();

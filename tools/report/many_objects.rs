@@ -315,8 +315,14 @@ pub fn measure(run: &Run) -> Result<(), String> {
         &[1, 1_000, 10_000, 20_000, 60_000, 100_000]
     };
     let frames = if run.quick { 1 } else { 9 };
+    // The apps without the plugin are timed once more in the end: that shows the noise.
+    let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));
+    let variants = Variant::ALL
+        .map(|variant| (variant, false))
+        .into_iter()
+        .chain(again);
     for &count in counts {
-        for variant in Variant::ALL {
+        for (variant, again) in variants.clone() {
             // A frame of eight cameras takes eight times as long.
             if variant == Variant::Cameras && count > 10_000 {
                 continue;
@@ -332,6 +338,11 @@ pub fn measure(run: &Run) -> Result<(), String> {
                 let [update, queue, batch, bind, encode] = &ms;
                 let whole = format!("{whole:.3}");
                 let name = variant.name();
+                let name = if again {
+                    format!("{name}; again")
+                } else {
+                    name.to_owned()
+                };
                 let materials = crowd.materials();
                 table.push(&[
                     &count, &name, &round, &materials, &whole, update, queue, batch, bind, encode,

@@ -76,6 +76,19 @@ fn scenes_with_equal_settings_share_a_copy() {
     app.world_mut().entity_mut(root).insert(lit(0.5));
     assert_eq!(copies(&mut app), 1, "and put back");
     assert_eq!(copy(&app, mesh), shared);
+    // All together: their copy changes in place too.
+    for [root, _] in &scenes {
+        app.world_mut().entity_mut(*root).insert(lit(0.9));
+    }
+    assert_eq!(copies(&mut app), 1);
+    assert_eq!(copy(&app, mesh), shared);
+    // A material that is gone takes its copies with it, also while there are scenes.
+    let brief = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let brief = app.world_mut().spawn((ChildOf(root), brief)).id();
+    assert_eq!(copies(&mut app), 2);
+    app.world_mut().despawn(brief);
+    app.update();
+    assert_eq!(copies(&mut app), 1, "of a material that is gone");
     for [root, _] in &scenes {
         app.world_mut().entity_mut(*root).remove::<ToonScene>();
     }
