@@ -269,8 +269,9 @@ fn objects_with_lightmaps_have_lines() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The small scene on a device without compute shaders.
-pub fn without_compute(size: UVec2) -> Small {
+/// Without compute shaders and storage, as in WebGL 2, a style is drawn without what needs them.
+#[test]
+fn a_device_without_compute_shaders_draws_a_style() {
     let limits = wgpu::Limits {
         max_compute_workgroup_size_x: 0,
         max_compute_workgroup_size_y: 0,
@@ -283,20 +284,13 @@ pub fn without_compute(size: UVec2) -> Small {
     };
     let options = HeadlessOptions {
         limits: Some(limits),
-        ..options(size)
+        ..options(size())
     };
     let mut small = Small::with(options, Msaa::Off);
+    put_lightmapped(&mut small);
     // The engine decides by the adapter, not by its limits, whether it has compute shaders, and
     // fails.
     cluster_on_cpu(&mut small);
-    small
-}
-
-/// Without compute shaders and storage, as in WebGL 2, a style is drawn without what needs them.
-#[test]
-fn a_device_without_compute_shaders_draws_a_style() {
-    let mut small = without_compute(size());
-    put_lightmapped(&mut small);
     let plain = small.settle().picture();
     let of_engine = small.errors();
     small.settle();

@@ -1,6 +1,6 @@
 //! Failures that post-processing plugins are known for, one test for each.
 
-pub mod devices;
+mod devices;
 mod effects;
 mod inputs;
 mod lifetimes;
