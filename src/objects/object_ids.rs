@@ -26,7 +26,7 @@ use bevy::{
 ///
 /// An object has an id while a view with ids sees one of its meshes, and keeps it afterwards until
 /// another object needs it: ids are given away again in the order in which they became free, at
-/// least [`REST`] frames later if there are others. While views see more than 65535 objects, the
+/// least three frames later if there are others. While views see more than 65535 objects, the
 /// others share ids, and there are no [object edges](crate::lines::ObjectEdges) between those with
 /// the same one.
 #[derive(Resource, Debug, Default)]

@@ -264,13 +264,13 @@ impl Crowd {
             Variant::Moving => {
                 for cube in self.cubes.iter().step_by(100) {
                     if let Some(mut at) = world.get_mut::<Transform>(*cube) {
-                        at.translation.y += if frame % 2 == 0 { 0.1 } else { -0.1 };
+                        at.translation.y += if frame.is_multiple_of(2) { 0.1 } else { -0.1 };
                     }
                 }
             }
             Variant::Turning => {
                 if let Some(mut at) = world.get_mut::<Transform>(self.cameras[0]) {
-                    let angle = if frame % 2 == 0 { 0.1 } else { -0.1 };
+                    let angle = if frame.is_multiple_of(2) { 0.1 } else { -0.1 };
                     at.rotate_y(angle);
                 }
             }
