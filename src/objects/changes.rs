@@ -36,7 +36,7 @@ impl ChangedObjects {
     }
 }
 
-/// What of the engine decides which draw call a mesh is part of.
+/// A change of a component on which the draw call of a mesh depends.
 type Drawn = Or<(
     Changed<Lightmap>,
     Changed<NoAutomaticBatching>,

@@ -166,7 +166,7 @@ impl OutlineStyle {
 /// The components of objects that change how they are drawn.
 type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
 
-/// Whether the table is another one than in the last frame.
+/// Whether the table of outline styles may have changed.
 #[derive(SystemParam)]
 pub(crate) struct StyleChanges<'w, 's> {
     styles: Inherited<'w, 's, OutlineStyle>,

@@ -351,7 +351,7 @@ fn prepare_places(
         bounds.buffer.set(found);
         bounds.buffer.write_buffer(&device, &queue);
     }
-    let places = (ids.len() as u64 + 1).next_power_of_two();
+    let places = (ids.last() as u64 + 1).next_power_of_two();
     let size = PLACE * places.max(LEAST_PLACES);
     for (entity, request, known, table) in &views {
         let forgets = known.is_none_or(|places| places.is_past(request));

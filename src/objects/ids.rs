@@ -232,28 +232,14 @@ impl Queue<'_, '_> {
         }
         if let Ok((bin, input)) = found {
             let record = self.records.of(mesh.id());
-            self.phase.add(
-                bin,
-                Instance {
-                    mesh,
-                    input,
-                    record,
-                },
-            );
+            self.phase.add(bin, Instance::new(mesh, input, record));
         }
         if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
             let marked = self.items.bin(mesh, self.key.view, Drawn::Marked);
             if let Ok((bin, input)) = marked
                 && let Some(record) = self.records.mark(mesh.id())
             {
-                self.phase.add(
-                    bin,
-                    Instance {
-                        mesh,
-                        input,
-                        record,
-                    },
-                );
+                self.phase.add(bin, Instance::new(mesh, input, record));
             }
             if found.is_err() {
                 found = marked;

@@ -26,7 +26,7 @@ pub(super) fn build(app: &mut App) {
         .add_observer(|_: On<Remove, ChildOf>, mut tree: ResMut<Tree>| tree.set_changed());
 }
 
-/// Whether a component applies to other entities than before, or says something else.
+/// Whether a component, or the set of entities that inherit it, may have changed.
 #[derive(SystemParam)]
 pub(super) struct Inherited<'w, 's, C: Component> {
     changed: Query<'w, 's, (), Changed<C>>,

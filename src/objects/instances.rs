@@ -16,46 +16,21 @@ use bevy::{
             gpu_preprocessing::{BatchedInstanceBuffers, PreprocessWorkItem},
             no_gpu_preprocessing::BatchedInstanceBuffer,
         },
-        render_resource::{
-            BindGroup, BindingResource, Buffer, BufferBinding, BufferId, BufferUsages,
-            PipelineCache, RawBufferVec,
-        },
+        render_resource::{BindGroup, BindingResource, Buffer, BufferBinding, PipelineCache},
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewUniformOffset, ViewUniforms},
     },
 };
 
 use super::{
+    instance_buffers::{Expansion, InstanceBuffers},
     phase::{Instance, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::ObjectIdPipeline,
     sections::SectionBuffer,
 };
 use crate::gpu::{compute_pass, entry};
 
-/// The instances of a view on the GPU, in the order of its draw calls.
-pub(crate) struct InstanceBuffers {
-    /// What the engine expands; empty where the CPU does it.
-    work: RawBufferVec<PreprocessWorkItem>,
-    /// The records of the instances, after as many unused ones as there are instances of other
-    /// passes before them.
-    records: RawBufferVec<[u32; 4]>,
-    expansion: Option<Expansion>,
-    /// What the passes bind, and the buffers that are bound.
-    bound: Option<([BufferId; 2], BindGroup)>,
-}
-
-impl Default for InstanceBuffers {
-    fn default() -> Self {
-        Self {
-            work: RawBufferVec::new(BufferUsages::STORAGE),
-            records: RawBufferVec::new(BufferUsages::STORAGE),
-            expansion: None,
-            bound: None,
-        }
-    }
-}
-
-/// The engine's buffers of mesh instances, of which there is one kind or the other.
+/// The engine's buffers of mesh instances: one of them exists, depending on who expands meshes.
 #[derive(SystemParam)]
 pub(super) struct EngineBuffers<'w> {
     gpu: Option<ResMut<'w, BatchedInstanceBuffers<MeshUniform, MeshInputUniform>>>,
@@ -180,14 +155,6 @@ impl ObjectIdPhase {
         self.buffers.work.write_buffer(device, queue);
         self.buffers.records.write_buffer(device, queue);
     }
-}
-
-/// What expands the instances of a view.
-#[derive(Clone)]
-struct Expansion {
-    /// The buffers that are bound, and the number of instances.
-    key: ([BufferId; 5], usize),
-    group: BindGroup,
 }
 
 /// The engine's side of the bindings.

@@ -17,6 +17,8 @@ mod ids;
 #[cfg(feature = "objects")]
 mod inherit;
 #[cfg(feature = "objects")]
+mod instance_buffers;
+#[cfg(feature = "objects")]
 mod instances;
 #[cfg(feature = "objects")]
 mod items;

@@ -21,7 +21,7 @@ use bevy::{
     },
 };
 
-use super::{QueuedDepth, instances::InstanceBuffers, object_ids::ObjectIds};
+use super::{QueuedDepth, instance_buffers::InstanceBuffers, object_ids::ObjectIds};
 
 /// A draw call.
 pub(crate) struct ObjectIdItem {
@@ -104,6 +104,16 @@ pub(crate) struct Instance {
     pub input: u32,
     /// What `ids.wgsl` reads of it. The first is the id that its object gave it.
     pub record: [u32; 4],
+}
+
+impl Instance {
+    pub fn new(mesh: MainEntity, input: u32, record: [u32; 4]) -> Self {
+        Self {
+            mesh,
+            input,
+            record,
+        }
+    }
 }
 
 /// [`Instance::input`] of a mesh that has left its bin.
@@ -389,11 +399,7 @@ mod tests {
 
     fn add(phase: &mut ObjectIdPhase, mesh: MainEntity, (of, marked, input): (u128, bool, u32)) {
         let record = [0, input, 0, 0];
-        let instance = Instance {
-            mesh,
-            input,
-            record,
-        };
+        let instance = Instance::new(mesh, input, record);
         phase.add(bin(of, Layer::Prepass), instance);
         if marked {
             phase.add(bin(of, Layer::Marked), instance);
