@@ -17,7 +17,7 @@ use bevy::{
         curve::{EaseFunction, EasingCurve},
     },
     reflect::Reflect,
-    time::Time,
+    time::{Real, Time},
 };
 
 use super::{Comic, ComicStyle, layer::own_look};
@@ -32,8 +32,8 @@ use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 /// other style, this component is gone, and [`StyleTransitionFinished`] is
 /// triggered on the camera.
 ///
-/// It runs on the default [`Time`], so that a paused game pauses it, and its
-/// clock stands while pipelines compile that the camera has never needed
+/// It runs on the default [`Time`], so that a paused game pauses it, unless it runs
+/// [in real time](Self::in_real_time). Its clock stands while pipelines compile that the camera has never needed
 /// before. Styles that the game puts on the camera meanwhile are overwritten.
 ///
 /// ```
@@ -50,6 +50,7 @@ pub struct StyleTransition {
     target: StyleTarget,
     seconds: f32,
     easing: TransitionEasing,
+    real_time: bool,
     start: Option<Start>,
     elapsed: f32,
 }
@@ -111,6 +112,7 @@ impl StyleTransition {
             target,
             seconds,
             easing: TransitionEasing::default(),
+            real_time: false,
             start: None,
             elapsed: 0.0,
         }
@@ -120,6 +122,16 @@ impl StyleTransition {
     #[must_use]
     pub fn with_easing(self, easing: TransitionEasing) -> Self {
         Self { easing, ..self }
+    }
+
+    /// The same transition in real time: it goes on while the game is paused or in slow motion, as for
+    /// the look of a pause menu.
+    #[must_use]
+    pub fn in_real_time(self) -> Self {
+        Self {
+            real_time: true,
+            ..self
+        }
     }
 
     /// How much of the time has passed, 0 to 1.
@@ -147,8 +159,10 @@ pub(super) fn run_transitions(
     styles: Option<Res<Assets<ComicStyle>>>,
     assets: Option<Res<AssetServer>>,
     diagnostics: Res<ComicsDiagnostics>,
-    time: Option<Res<Time>>,
+    (time, real_time): (Option<Res<Time>>, Option<Res<Time<Real>>>),
 ) {
+    let game = time.map_or(0.0, |time| time.delta_secs());
+    let real = real_time.map_or(0.0, |time| time.delta_secs());
     for (entity, mut transition, has_handle) in &mut cameras {
         let Ok(mut camera) = commands.get_entity(entity) else {
             continue;
@@ -177,7 +191,7 @@ pub(super) fn run_transitions(
                 camera.insert_if(Comic::default(), || has_handle);
             }
         } else if !diagnostics.is_compiling(entity) {
-            transition.elapsed += time.as_ref().map_or(0.0, |time| time.delta_secs());
+            transition.elapsed += if transition.real_time { real } else { game };
         }
         if transition.progress() >= 1.0 {
             target.apply(&mut camera);

@@ -201,6 +201,25 @@ fn a_transition_takes_its_time_and_arrives() {
     assert_eq!(small.errors(), 0);
 }
 
+/// A paused game pauses its transitions, except for those in real time.
+#[test]
+fn a_transition_in_real_time_runs_while_the_game_is_paused() {
+    let mut small = Small::new(TINY, Msaa::Off);
+    let [a, b, _] = three_styles();
+    small.style(&a);
+    small.settle();
+    small.world().resource_mut::<Time<Virtual>>().pause();
+    small.insert(StyleTransition::to(b.clone(), 0.5));
+    small.headless.step(40);
+    assert!(fading(&small));
+    small.insert(StyleTransition::to(b.clone(), 0.5).in_real_time());
+    // The clock of the test advances by 1/60 s a frame.
+    small.headless.step(30);
+    assert!(fading(&small));
+    small.headless.step(4);
+    assert_eq!(look(&small), unnamed(&b));
+}
+
 #[test]
 fn a_transition_and_the_cameras_file_agree() {
     let mut small = Small::new(TINY, Msaa::Off);
