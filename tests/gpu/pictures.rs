@@ -366,6 +366,7 @@ fn everything(
     let style = ComicStyle::new()
         .with(Desaturation {
             amount: 0.7,
+            near: 0.2,
             exponent: 0.5,
             equations: color,
         })

@@ -96,6 +96,7 @@ fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32)
 
 fn colorization(s: Colorization, p: Pixel) -> Pixel {
     var out = p;
-    out.color = colorize(s, p.color, p.depth.x, p.depth.y, p.saturation);
+    let opacity = max(p.alpha, 1e-3);
+    out.color = colorize(s, p.color / opacity, p.depth.x, p.depth.y, p.saturation) * opacity;
     return out;
 }

@@ -19,9 +19,13 @@ use crate::{
 #[serde(default, deny_unknown_fields)]
 pub struct Desaturation {
     /// Fraction of the saturation that is lost at the far end of the depth map.
-    /// Range 0 (the effect is left out) to 1, default 1.
+    /// Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
+    /// Fraction of the saturation that is lost at the near end. With the same `amount`, all distances
+    /// lose the same. Range 0 to 1, default 0. At 0 for both, the effect is left out.
+    #[reflect(@FieldRange::FRACTION)]
+    pub near: f32,
     /// Shapes the loss of saturation with distance: `(1 - D)` to the power of this
     /// exponent remains. Below 1, colours last longer and are lost late. Range 0.25
     /// to 4, default 1. Source: \[CS\] Eq. 6 (1) and Eq. 7 (0.5).
@@ -38,6 +42,7 @@ impl Default for Desaturation {
     fn default() -> Self {
         Self {
             amount: 1.0,
+            near: 0.0,
             exponent: 1.0,
             equations: Equations::Corrected,
         }
@@ -49,6 +54,7 @@ impl Desaturation {
     /// as printed).
     pub const LINEAR: Self = Self {
         amount: 1.0,
+        near: 0.0,
         exponent: 1.0,
         equations: Equations::Faithful,
     };
@@ -56,6 +62,7 @@ impl Desaturation {
     /// Eq. 7 as printed).
     pub const QUADRATIC: Self = Self {
         amount: 1.0,
+        near: 0.0,
         exponent: 0.5,
         equations: Equations::Faithful,
     };
@@ -72,12 +79,13 @@ impl Effect for Desaturation {
     type Uniform = DesaturationUniform;
 
     fn strength(&self) -> f32 {
-        self.amount
+        self.amount.max(self.near)
     }
 
     fn faded(self, fraction: f32) -> Self {
         Self {
             amount: self.amount * fraction,
+            near: self.near * fraction,
             ..self
         }
     }
@@ -94,6 +102,7 @@ impl Effect for Desaturation {
     fn uniform(&self, _: &EffectContext) -> DesaturationUniform {
         DesaturationUniform {
             amount: self.amount,
+            near: self.near,
             exponent: self.exponent,
             curve: self.curve(),
             faithful: u32::from(self.is_faithful()),
@@ -120,6 +129,7 @@ impl Desaturation {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct DesaturationUniform {
     amount: f32,
+    near: f32,
     exponent: f32,
     curve: u32,
     faithful: u32,

@@ -88,7 +88,7 @@ fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
     if is_background(raw_depth(view.raw, vec2<u32>(at), d)) {
         return 0.0;
     }
-    let texel = (vec2<f32>(at - corner) + 0.5) / view.depth_scale;
+    let texel = (vec2<f32>(at - corner) + 0.5) / view.depth_scale + view.jitter;
     let clip = texel / vec2<f32>(view.viewport.zw) * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
     let h = s.relative_from_clip * vec4(clip, d, 1.0);
     let away = texel - (p.inside + 0.5);
@@ -117,7 +117,7 @@ fn seen_surface(s: Hatching, p: Pixel) -> Surface {
         return on;
     }
     let size = vec2<f32>(view.viewport.zw);
-    let texel = (vec2<f32>(at - view.viewport.xy) + 0.5) / view.depth_scale;
+    let texel = (vec2<f32>(at - view.viewport.xy) + 0.5) / view.depth_scale + view.jitter;
     let clip = texel / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
     let h = s.relative_from_clip * vec4(clip, d, 1.0);
     on = surface_at(s.relative_from_clip, h, vec2(2.0, -2.0) / size, n.xyz);

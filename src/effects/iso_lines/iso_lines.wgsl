@@ -90,7 +90,8 @@ fn iso_coverage(s: IsoLines, value: f32, change: vec2<f32>, error: f32) -> f32 {
 fn value_beside(s: IsoLines, at: vec2<i32>, d: f32, slope: vec2<f32>, by: vec2<i32>) -> vec2<f32> {
     let first = vec2<f32>(view.viewport.xy);
     let size = vec2<f32>(view.viewport.zw) * view.depth_scale;
-    let place = (vec2<f32>(at + by) + 0.5 - first) / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
+    let texel = vec2<f32>(at + by) + 0.5 - first + view.jitter * view.depth_scale;
+    let place = texel / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
     let beside = d + dot(slope, vec2<f32>(by));
     var map = 0.0;
 #ifdef MAP
@@ -132,7 +133,7 @@ fn iso_lines(s: IsoLines, p: Pixel) -> Pixel {
         value_beside(s, at, d, slope, vec2(0, 1)).x - value_beside(s, at, d, slope, vec2(0, -1)).x,
     );
     // From the middle of the texel to the middle of the pixel.
-    let texel = (vec2<f32>(at - first) + 0.5) / view.depth_scale;
+    let texel = (vec2<f32>(at - first) + 0.5) / view.depth_scale + view.jitter;
     let away = p.inside + 0.5 - texel;
     let own = value_beside(s, at, d, slope, vec2(0, 0));
     let value = own.x + dot(change, away);

@@ -78,8 +78,7 @@ fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32, splits: f32) -> ve
 
 fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
     var out = p;
-    // The lowest band is not black: nothing is added where the background shows through.
-    out.color = mix(p.color, banded_color(s, p.color, p.change, p.splits), p.alpha);
+    out.color = banded_color(s, p.color / max(p.alpha, 1e-3), p.change, p.splits) * p.alpha;
     return out;
 }
 

@@ -69,7 +69,6 @@ fn tone_ramp(s: ToneRamp, p: Pixel) -> Pixel {
     var out = p;
     let opacity = max(p.alpha, 1e-3);
     let tones = toned(s, max(p.color / opacity, vec3(0.0)), p.change, tone_detail(s, p.depth));
-    // Nothing is added where the background shows through.
-    out.color = mix(p.color, tones * p.alpha, p.alpha);
+    out.color = tones * p.alpha;
     return out;
 }

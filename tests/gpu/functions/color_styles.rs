@@ -78,7 +78,7 @@ fn faithful_equations_keep_greys() {
             "#import bevy_comics::effects::desaturation::{Desaturation, desaturate, saturation_left}
              #import bevy_comics::effects::colorization::{Colorization, colorize}",
             "let grey = vec3(i(1u));
-             let s = Desaturation(i(0u), 1.7, 2u, 1u);
+             let s = Desaturation(i(0u), 0.0, 1.7, 2u, 1u);
              let a = desaturate(s, grey, saturation_left(s, i(3u)));
              let t = Colorization(vec2(0.6, 0.8), 0.7, 0.2, 0.58, i(0u), u(4u), 1u);
              let b = colorize(t, grey, i(2u), i(3u), 0.75);

@@ -9,7 +9,8 @@ use bevy_comics::{Desaturation, effects::Equations};
 /// Fraction of the saturation that is left; `l`: complement of the depth map.
 pub fn saturation_left(s: &Desaturation, l: f64) -> f64 {
     let k = l.max(0.0).powf(f64::from(s.exponent));
-    1.0 - f64::from(s.amount) * (1.0 - k)
+    let [near, far] = [s.near, s.amount].map(f64::from);
+    1.0 - (near + (far - near) * (1.0 - k))
 }
 
 pub fn desaturate(s: &Desaturation, linear: Rgb, k: f64) -> Rgb {

@@ -78,20 +78,21 @@ fn colored(
     if let Some(s) = style.get::<ToneRamp>() {
         let seen = linear.map(|c| (c / opacity).max(0.0) * (1.0 + nudge));
         let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
-        linear = std::array::from_fn(|i| mix(linear[i], tones[i] * alpha, alpha));
+        linear = tones.map(|c| c * alpha);
     }
     if let Some(s) = style.get::<ToneBands>() {
-        let nudged = linear.map(|c| c * (1.0 + nudge));
-        let banded = tone_bands::banded_color(s, nudged, change, 1.0);
-        linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
+        let seen = linear.map(|c| c / opacity * (1.0 + nudge));
+        linear = tone_bands::banded_color(s, seen, change, 1.0).map(|c| c * alpha);
     }
     let mut saturation = 1.0;
     if let Some(s) = style.get::<Desaturation>() {
         saturation = desaturation::saturation_left(s, l);
-        linear = desaturation::desaturate(s, linear, saturation);
+        let seen = linear.map(|c| c / opacity);
+        linear = desaturation::desaturate(s, seen, saturation).map(|c| c * opacity);
     }
     if let Some(s) = style.get::<Colorization>() {
-        linear = colorization::colorize(s, linear, d, l, saturation);
+        let seen = linear.map(|c| c / opacity);
+        linear = colorization::colorize(s, seen, d, l, saturation).map(|c| c * opacity);
     }
     if let Some(s) = style.get::<ColorHarmony>() {
         let seen = linear.map(|c| c / opacity);
