@@ -46,6 +46,7 @@
 //! | [`style`] | errors and events of styles, transitions |
 //! | [`effects`] | modes of the effects, such as [`HalftoneMode`](effects::HalftoneMode) |
 //! | [`lines`] | settings of outlines, such as [`LineWeight`](lines::LineWeight) |
+//! | [`cameras`] | several cameras: overlays, masks |
 //! | [`depth`] | the depth map, its smoothing and its reduction |
 //! | `objects` | components for single meshes (feature `objects`, on by default) |
 //! | `toon` | the toon material (feature `toon`, on by default) |
@@ -109,6 +110,12 @@ pub use style::{Comic, ComicStyle, StyleTransition, presets};
 #[cfg(feature = "toon")]
 pub use toon::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
 
+/// Several cameras: pictures over pictures.
+pub mod cameras {
+    pub use crate::camera::{ComicOverlay, overlay_camera};
+    pub use crate::composite::{BeyondPrepass, StyleMask};
+}
+
 /// What the crate's own tests read; not part of its interface.
 #[doc(hidden)]
 pub mod testing {
@@ -144,7 +151,8 @@ mod pages {
         Abstraction: "docs/abstraction.md";
         Hatching: "docs/hatching.md";
         FixedRange: "docs/fixed-range.md";
-        SplitScreen: "docs/split-screen.md";
+        Cameras: "docs/cameras.md";
+        BigWorlds: "docs/big-worlds.md";
         TransparentThings: "docs/transparent-things.md";
         Print: "docs/print.md";
         Performance: "docs/performance.md";

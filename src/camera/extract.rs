@@ -14,6 +14,11 @@ use bevy::{
 };
 
 use super::{CameraPlan, fog::Fogs, light::Lights};
+#[cfg(feature = "objects")]
+use crate::{
+    composite::BeyondPrepass,
+    objects::{BackdropBoxes, Backdrops, FadingMeshes, LevelPlaces, Levels, nearest_backdrop},
+};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::EffectTarget,
@@ -44,6 +49,14 @@ pub(super) fn extract_views(
         Extract<Fogs>,
         Extract<Query<&GlobalTransform>>,
     ),
+    #[cfg(feature = "objects")] (backdrops, boxes): (
+        Extract<Res<Backdrops>>,
+        Extract<BackdropBoxes>,
+    ),
+    #[cfg(feature = "objects")] (levels, level_places): (
+        Extract<Res<Levels>>,
+        Extract<LevelPlaces>,
+    ),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
@@ -56,7 +69,17 @@ pub(super) fn extract_views(
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
         let mut view = commands.entity(render_entity);
-        want_objects(&mut view, (entity, &asked.plan), !writes.cutoffs.is_empty());
+        #[cfg(feature = "objects")]
+        let fades = fade_levels(
+            &mut view,
+            &asked.plan,
+            (&levels, &level_places),
+            places.get(entity).ok(),
+        );
+        #[cfg(not(feature = "objects"))]
+        let fades = false;
+        let writes = fades || !writes.cutoffs.is_empty();
+        want_objects(&mut view, (entity, &asked.plan), writes);
         view.insert(ViewPlan {
             camera: entity,
             plan: asked.plan.clone(),
@@ -70,6 +93,12 @@ pub(super) fn extract_views(
             target: target.and_then(|target| position_of(target, &places)),
             time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
             seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
+            #[cfg(feature = "objects")]
+            backdrop: (places.get(entity).ok())
+                .filter(|_| asked.plan.beyond != BeyondPrepass::Styled)
+                .and_then(|at| nearest_backdrop(&backdrops, &boxes, at.translation())),
+            #[cfg(not(feature = "objects"))]
+            backdrop: None,
             cuts: cuts.map_or(0, |cuts| cuts.0),
         });
     }
@@ -78,6 +107,30 @@ pub(super) fn extract_views(
             commands
                 .entity(entity)
                 .remove::<(ViewPlan, IdsWanted, DepthWanted)>();
+        }
+    }
+}
+
+/// Notes the meshes that fade in a view; returns whether there are any.
+#[cfg(feature = "objects")]
+fn fade_levels(
+    view: &mut EntityCommands,
+    plan: &Plan,
+    (levels, places): (&Levels, &LevelPlaces),
+    at: Option<&GlobalTransform>,
+) -> bool {
+    let fading = at
+        .filter(|_| plan.fades && plan.needs_depth())
+        .map(|at| levels.fading(at.translation(), places))
+        .filter(|fading| !fading.is_empty());
+    match fading {
+        Some(fading) => {
+            view.insert(FadingMeshes(fading));
+            true
+        }
+        None => {
+            view.remove::<FadingMeshes>();
+            false
         }
     }
 }

@@ -4,26 +4,32 @@
 mod extract;
 mod fog;
 mod light;
+#[cfg(any(feature = "objects", feature = "toon"))]
+mod mirror;
+mod overlay;
 mod prepasses;
+mod shared;
+mod warnings;
 
 use std::sync::Arc;
 
 use bevy::{
     app::{App, Last, Plugin},
-    camera::{Camera2d, Camera3d, RenderTarget},
+    camera::Camera3d,
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
         component::Component,
+        entity::Entity,
         query::With,
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res},
         world::EntityRef,
     },
-    log::warn_once,
     render::{
         ExtractSchedule, RenderApp,
         renderer::{RenderAdapterInfo, RenderDevice},
     },
+    window::PrimaryWindow,
 };
 
 use crate::{
@@ -31,11 +37,14 @@ use crate::{
     depth::MaterialsReadRange,
     effect::EffectRegistry,
     fused::{DeviceLacks, Plan},
-    objects::{ObjectChanges, ObjectStyles},
+    objects::ObjectStyles,
     schedule::{ComicsSystems, RunImpacts},
 };
 pub use light::KeyLight;
+pub use overlay::{ComicOverlay, overlay_camera};
 use prepasses::{give_up_claims, read_drawn_depth, request_prepasses};
+use shared::{Styled, own_pixels};
+use warnings::{warn_of_pairs, warn_unsupported};
 
 /// On a camera in the main world: what it draws, planned from its components.
 #[derive(Component, Clone, Debug)]
@@ -50,6 +59,7 @@ pub(crate) struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
+        overlay::build(app);
         app.register_type::<KeyLight>()
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
@@ -64,7 +74,7 @@ impl Plugin for CameraPlugin {
                     )
                         .chain()
                         .in_set(ComicsSystems::Plan),
-                    warn_unsupported,
+                    (warn_unsupported, warn_of_pairs),
                 ),
             );
     }
@@ -76,6 +86,8 @@ impl CameraPlugin {
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app.add_systems(ExtractSchedule, extract::extract_views);
         }
+        #[cfg(any(feature = "objects", feature = "toon"))]
+        mirror::build_render(app);
     }
 }
 
@@ -86,20 +98,35 @@ fn plan_cameras(
     objects: Res<ObjectStyles>,
     materials: Res<MaterialsReadRange>,
     (device, adapter): (Option<Res<RenderDevice>>, Option<Res<RenderAdapterInfo>>),
+    primary_window: Query<Entity, With<PrimaryWindow>>,
 ) {
     let lacks = (device.zip(adapter)).map_or_else(DeviceLacks::default, |(device, adapter)| {
         DeviceLacks::new(&device.limits(), &adapter)
     });
     let types = registry.types();
-    for camera in &cameras {
+    let plan = |camera: EntityRef| {
+        let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
+        let plan = Plan::new(camera, shown, &types, objects.changes())?;
+        lacks.warn();
+        Some(plan.on_device(lacks))
+    };
+    let planned = cameras.iter().map(|camera| (camera.id(), plan(camera)));
+    let planned: Vec<_> = planned.collect();
+    let primary_window = primary_window.single().ok();
+    let styled = planned.iter().filter_map(|(camera, plan)| {
+        let plan = plan.as_ref().filter(|plan| plan.draws());
+        plan.and_then(|_| Styled::new(cameras.get(*camera).ok()?, primary_window))
+    });
+    let styled: Vec<_> = styled.collect();
+    for (camera, mut plan) in planned {
+        let Ok(camera) = cameras.get(camera) else {
+            continue;
+        };
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
-        let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
-        let mut plan =
-            Plan::new(camera, shown, &types, objects.changes()).map(|plan| plan.on_device(lacks));
         if let Some(plan) = &mut plan {
-            lacks.warn();
             plan.materials = materials.0;
+            plan.own_pixels = own_pixels(camera, plan, &styled);
         }
         match (plan, known) {
             (Some(plan), Some(known)) if *known.plan == plan => {}
@@ -113,28 +140,6 @@ fn plan_cameras(
                 entity.remove::<CameraPlan>();
             }
             (None, None) => {}
-        }
-    }
-}
-
-/// Warns once about cameras with effects that this crate cannot draw on.
-fn warn_unsupported(
-    flat: Query<EntityRef, With<Camera2d>>,
-    targets: Query<(bevy::ecs::entity::Entity, &RenderTarget), With<CameraPlan>>,
-    registry: Res<EffectRegistry>,
-) {
-    let types = registry.types();
-    for camera in &flat {
-        if Plan::new(camera, &[], &types, ObjectChanges::default()).is_some() {
-            warn_once!(
-                "{} is a Camera2d: its effects are not drawn, they need a Camera3d",
-                camera.id()
-            );
-        }
-    }
-    for (camera, target) in &targets {
-        if matches!(target, RenderTarget::None { .. }) {
-            warn_once!("{camera} has no colour target: its effects are not drawn");
         }
     }
 }

@@ -22,7 +22,7 @@ use bevy::{
 };
 
 use super::CameraPlan;
-use crate::{diagnostics::ComicsDiagnostics, fused::Plan};
+use crate::{composite::BeyondPrepass, diagnostics::ComicsDiagnostics, fused::Plan};
 
 /// On a camera: a claim that this crate added the prepass `P`.
 #[derive(Component)]
@@ -132,12 +132,13 @@ pub(super) fn request_prepasses(
     }
 }
 
-/// With OpenGL, effects read the depth that the engine draws with.
+/// Some effects read the depth that the engine draws with; with OpenGL, all do.
 pub(super) fn read_drawn_depth(mut cameras: Query<(&CameraPlan, &mut Camera3d)>) {
     for (plan, mut camera) in &mut cameras {
         let usage = TextureUsages::from(camera.depth_texture_usages);
         let wanted = usage | TextureUsages::TEXTURE_BINDING;
-        if plan.plan.lacks.depth_copies && usage != wanted {
+        let reads = plan.plan.lacks.depth_copies || plan.plan.beyond != BeyondPrepass::Styled;
+        if reads && usage != wanted {
             camera.depth_texture_usages = wanted.into();
         }
     }

@@ -1,5 +1,7 @@
 //! What comes after the effects: the mix with the original picture, the split view,
-//! and the debug views.
+//! the debug views, and the pixels that effects change.
+
+mod mask;
 
 use bevy::{
     app::{App, Plugin},
@@ -11,6 +13,9 @@ use bevy::{
 };
 
 use crate::settings::{FieldRange, clamp_or_default};
+
+pub use mask::{BeyondPrepass, StyleMask};
+pub(crate) use mask::{DRAWN_DEPTH_BINDING, OwnPixels};
 
 /// Mixes the styled picture of a camera with the original, in linear light: the
 /// fraction of the styled picture. Range 0 to 1, default 1.
@@ -178,6 +183,8 @@ impl Plugin for CompositePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleWeight>()
             .register_type::<SplitView>()
+            .register_type::<StyleMask>()
+            .register_type::<BeyondPrepass>()
             .register_type::<DebugView>();
     }
 }
@@ -186,5 +193,6 @@ impl CompositePlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "composite.wgsl");
+        load_shader_library!(app, "mask.wgsl");
     }
 }

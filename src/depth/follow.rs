@@ -105,8 +105,9 @@ pub(crate) struct ViewSmoothing {
     pub drawn: Buffer,
     /// Counts of the reduction, if it counts.
     pub histogram: Option<Buffer>,
-    /// Number of cuts and size of the view in depth pixels. If one changes, smoothing
-    /// starts anew, or waits for that while the range is locked.
+    /// Number of cuts and size of the viewport. If one changes, smoothing starts anew, or waits for
+    /// that while the range is locked. The resolution of the main pass does not count: games change
+    /// it all the time.
     origin: (u32, UVec2),
     /// If raw depth gets another meaning, smoothing starts anew even if the range is
     /// locked.

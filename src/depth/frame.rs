@@ -62,6 +62,7 @@ pub(crate) struct RawDepth {
     pub view_w: Vec4,
     pub ndc: Vec4,
     pub nearest: f32,
+    pub sky: f32,
 }
 
 /// The view depth in world units at which an oblique view has a raw depth of 1: smaller
@@ -182,11 +183,15 @@ impl DepthProjection {
         orthographic.then(|| reference_distance(clip_from_view) as f32)
     }
 
-    /// What `raw_depth` of `raw.wgsl` reads: zeros unless the projection is oblique.
-    /// `viewport` is x, y, width, height in pixels.
-    pub fn raw(&self, clip_from_view: &Mat4, viewport: UVec4) -> RawDepth {
+    /// What `raw_depth` of `raw.wgsl` reads. `viewport` is x, y, width, height in pixels; `sky` the distance
+    /// from which on all counts as sky, in world units.
+    pub fn raw(&self, clip_from_view: &Mat4, viewport: UVec4, sky: Option<f32>) -> RawDepth {
+        let sky = sky.map_or(0.0, |sky| self.raw_depth(sky.into()).clamp(0.0, 1.0) as f32);
         if self.kind != ProjectionKind::Oblique {
-            return RawDepth::default();
+            return RawDepth {
+                sky,
+                ..RawDepth::default()
+            };
         }
         let rows = clip_from_view.inverse().transpose();
         let [x, y, width, height] = viewport.to_array().map(|v| v as f32);
@@ -196,6 +201,7 @@ impl DepthProjection {
             view_w: rows.w_axis,
             ndc: Vec4::new(sx, sy, -1.0 - x * sx, 1.0 - y * sy),
             nearest: OBLIQUE_UNIT as f32,
+            sky,
         }
     }
 

@@ -53,6 +53,11 @@ pub struct DepthMap {
     /// foreground takes the atmosphere. Contours and outlines do not change.
     /// Default: `false`. `true` is the literal reading of \[CS\] Eq. 6 to 11.
     pub flip: bool,
+    /// Distance from which on geometry counts as sky, in world units: it has no lines, is at the far end of the
+    /// map and does not belong to the visible range. For skies and horizons that are meshes; single meshes
+    /// can have a `Backdrop` instead. Range 0.001 to 1e30; `None` is nowhere. Default: `None`.
+    #[reflect(@FieldRange::logarithmic(1e-3, 1e30).unit("units"))]
+    pub sky_beyond: Option<f32>,
     /// Distance from the farthest geometry to the sky for contours, in units of the
     /// depth map. At 0 the farthest object has no contour against the sky.
     /// Range 0 to 10, default 0.05.
@@ -95,6 +100,7 @@ impl Default for DepthMap {
         Self {
             mapping: DepthMapping::default(),
             flip: false,
+            sky_beyond: None,
             sky_gap: 0.05,
             floor: 1.0 / 16384.0,
             orthographic_floor: 1e-4,

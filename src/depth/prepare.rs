@@ -141,7 +141,7 @@ impl ViewDepthRange {
         uniforms: &mut RangeUniforms,
         (device, textures): (&RenderDevice, &mut TextureCache),
     ) {
-        let size = request.rect.zw();
+        let size = request.viewport;
         if passes.smoothing.is_some() {
             let smoothing = self
                 .smoothing
@@ -158,7 +158,7 @@ impl ViewDepthRange {
             self.borders = Some(ViewBorders::new(device));
         }
         self.chain = match passes.reduction {
-            Reduction::PingPong { .. } => chain_textures(textures, device, size),
+            Reduction::PingPong { .. } => chain_textures(textures, device, request.rect.zw()),
             Reduction::Compute { .. } => Vec::new(),
         };
         self.view_offset = uniforms.views.push(&RangeView {

@@ -11,6 +11,8 @@ struct RawDepth {
     ndc: vec4<f32>,
     // View depth in world units that becomes 1; smaller ones count as this.
     nearest: f32,
+    // What is farther than this raw depth counts as sky: DepthMap::sky_beyond. 0: nothing does.
+    sky: f32,
 }
 
 #ifdef OBLIQUE
@@ -23,11 +25,12 @@ fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {
     }
     let clip = vec4((vec2<f32>(pixel) + 0.5) * r.ndc.xy + r.ndc.zw, d, 1.0);
     let z = -dot(r.view_z, clip) / dot(r.view_w, clip);
-    return clamp(r.nearest / max(z, r.nearest), 0.0, 1.0);
+    let raw = clamp(r.nearest / max(z, r.nearest), 0.0, 1.0);
+    return select(raw, 0.0, raw < r.sky);
 }
 #else
 fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {
-    return d;
+    return select(d, 0.0, d < r.sky);
 }
 #endif
 

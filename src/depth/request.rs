@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, entity::Entity},
-    math::UVec4,
+    math::{UVec2, UVec4},
 };
 
 use super::{DepthMap, RawDepth, frame::DepthProjection};
@@ -15,6 +15,8 @@ pub(crate) struct RangeRequest {
     pub map: DepthMap,
     pub projection: DepthProjection,
     pub raw: RawDepth,
+    /// Size of the viewport in physical pixels.
+    pub viewport: UVec2,
     /// The part of the depth texture that the main pass draws: x, y, width,
     /// height.
     pub rect: UVec4,

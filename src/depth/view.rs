@@ -13,7 +13,11 @@ pub(crate) struct ViewUniform {
     pub viewport: IVec4,
     pub depth_scale: Vec2,
     pub flip: u32,
-    pub unused: u32,
+    /// Raw depth from which on the picture may show a `Backdrop`; 0: there is none.
+    pub backdrop: f32,
+    /// What belongs at a place is drawn by this much before it, in physical pixels of the viewport.
+    pub jitter: Vec2,
+    pub unused: Vec2,
     pub raw: RawDepth,
     pub depth: DepthFrame,
 }
@@ -32,7 +36,9 @@ impl ViewUniform {
             viewport: viewport.as_ivec4(),
             depth_scale: depth_scale(viewport, main_pass_size),
             flip: u32::from(flip),
-            unused: 0,
+            backdrop: 0.0,
+            jitter: Vec2::ZERO,
+            unused: Vec2::ZERO,
             raw,
             depth,
         }

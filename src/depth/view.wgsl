@@ -17,7 +17,12 @@ struct View {
     depth_scale: vec2<f32>,
     // 1: DepthMap::flip is set.
     flip: u32,
-    unused: u32,
+    // Raw depth from which on the picture may show a Backdrop; 0: there is none.
+    backdrop: f32,
+    // What belongs at a place is drawn by this much before it, in physical pixels of the viewport: the jitter of
+    // temporal anti-aliasing.
+    jitter: vec2<f32>,
+    unused: vec2<f32>,
     raw: RawDepth,
     depth: DepthFrame,
 }

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use bevy::{
     camera::MainPassResolutionOverride,
-    core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
         entity::Entity,
@@ -21,12 +20,17 @@ use bevy::{
     },
 };
 
-use super::{Plan, ViewPlan, prepare::FusedRequest, requests::Services, scene::Scene};
+use super::{
+    Plan, ViewPlan,
+    prepare::FusedRequest,
+    requests::Services,
+    scene::{Scene, SceneTextures},
+};
 use crate::{
     depth::{passes::RangePasses, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     lines::{LinePasses, LineRequest, ViewMarks},
-    objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
+    objects::{DepthWanted, IdRequest, IdsWanted},
 };
 
 /// On a view that a plan was chosen for: the last plan whose pipelines were all
@@ -52,7 +56,7 @@ pub(crate) fn choose_plans(
         &ViewPlan,
         &ExtractedCamera,
         &ExtractedView,
-        (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
+        SceneTextures<'_>,
         (Option<&ViewTarget>, Option<&ReadyPlan>),
         (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
         Option<&ViewMarks>,

@@ -9,6 +9,9 @@ const RECIPE: &str = include_str!("fused.wgsl");
 const RESTORE: &str = "#ifdef UNSTYLED_COLORS
     p.color = mix(p.color, p.original, unstyled_fraction(pixel));
 #endif
+#ifdef MASKED_COLORS
+    p.color = mix(p.original, p.color, changed_fractions(pixel).x);
+#endif
 ";
 
 impl EffectRegistry {
@@ -38,7 +41,7 @@ fn fused_pass(types: &[&EffectType]) -> String {
             }
             "//@calls" => {
                 let later = types.iter().filter(|e| e.stage > EffectStage::Print);
-                text.extend(later.map(|effect| calls(effect)));
+                text.extend(later.map(|effect| masked_calls(effect)));
             }
             _ => {
                 text.push_str(line);
@@ -68,6 +71,12 @@ fn members(effect: &EffectType) -> String {
 /// The shader definition that leaves out an effect, with the settings kept in the uniform.
 pub(super) fn left_out(name: &str) -> String {
     format!("WITHOUT_{}", definition(name))
+}
+
+/// The shader definition of an effect that changes only some pixels: the fraction of a pixel that it
+/// changes, see `changed_fractions`.
+pub(super) fn masked_by(name: &str) -> String {
+    format!("MASKED_{}", definition(name))
 }
 
 /// The shader definition of the passes that draw means for an effect.
@@ -106,6 +115,14 @@ fn call(effect: &EffectType, suffix: &str) -> String {
         Some(_) => format!("{path}::{name}{suffix}(comics.{name}_settings, p)"),
         None => format!("{path}::{name}{suffix}(p)"),
     }
+}
+
+/// The same as [`calls`], for an effect that may change only a fraction of the pixel.
+fn masked_calls(effect: &EffectType) -> String {
+    let masked = masked_by(effect.name);
+    let before = guarded(&masked, "    before_effect = p;\n");
+    let after = format!("    p = changed(before_effect, p, fractions[#{{{masked}}}]);\n");
+    before + &calls(effect) + &guarded(&masked, &after)
 }
 
 /// The call of an effect's function, and of its debug view if it has one.

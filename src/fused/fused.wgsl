@@ -13,7 +13,7 @@
 // which are blended over the picture.
 
 #import bevy_comics::depth::normal::load_normal
-#import bevy_comics::depth::view::{View, depth_frame, depth_pixel, load_depth, pixel_depth, set_view}
+#import bevy_comics::depth::view::{View, depth_frame, depth_pixel, inside_viewport, load_depth, pixel_depth, set_view}
 #import bevy_comics::effect::color::{
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
@@ -21,6 +21,9 @@
 #import bevy_comics::effect::aux_scalar::{load_aux_scalar, packed_number}
 #import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
+#ifdef MASK
+#import bevy_comics::composite::mask::changed_fractions
+#endif
 #import bevy_comics::composite::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
 #import bevy_comics::lines::owner_plane::owner_weights
@@ -80,9 +83,7 @@ fn load_source(pixel: vec2<i32>) -> vec4<f32> {
 #ifdef OVERLAY
     return vec4(0.0);
 #else
-    // Helper invocations at the border of a target of odd size lie outside it.
-    let last = vec2<i32>(textureDimensions(source)) - 1;
-    return textureLoad(source, min(pixel, last), 0);
+    return textureLoad(source, pixel, 0);
 #endif
 }
 
@@ -148,13 +149,30 @@ fn printed(before: Pixel, pixel: vec2<i32>) -> Pixel {
 #ifdef UNSTYLED_PRINT
     p.color = mix(p.color, p.original, unstyled_fraction(pixel));
 #endif
+#ifdef MASKED_PRINT
+    p.color = mix(p.original, p.color, changed_fractions(pixel).x);
+#endif
     return p;
 }
 
+#ifdef MASK
+// A pixel of which an effect changes only a fraction.
+fn changed(before: Pixel, after: Pixel, fraction: f32) -> Pixel {
+    var p = after;
+    p.color = mix(before.color, after.color, fraction);
+    p.alpha = mix(before.alpha, after.alpha, fraction);
+    return p;
+}
+#endif
+
 // A pixel after all later effects.
-fn inked(before: Pixel) -> Pixel {
+fn inked(before: Pixel, pixel: vec2<i32>) -> Pixel {
     var p = before;
     p.colored = before.color;
+#ifdef MASK
+    let fractions = changed_fractions(pixel);
+    var before_effect: Pixel;
+#endif
     //@calls
     return p;
 }
@@ -205,9 +223,10 @@ fn means(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
 }
 #endif
 
-// A pixel before the effects of the pass, without its place and depth.
-fn before_effects(pixel: vec2<i32>, stored: vec4<f32>) -> Pixel {
-    var p = found(pixel, stored);
+// A pixel before the effects of the pass, without its place and depth. Of the four pixels of a quad, some may
+// lie outside of the viewport or of the target: they count as its border.
+fn before_effects(pixel: vec2<i32>) -> Pixel {
+    var p = found(pixel, load_source(inside_viewport(pixel)));
 #ifdef LIGHTNESS_CHANGE
     // Must run before any early return: derivatives need all four pixels of a quad.
     p.change = fwidthFine(lightness(p.original));
@@ -230,7 +249,7 @@ fn after_effects(before: Pixel, pixel: vec2<i32>, place: vec2<f32>) -> Pixel {
     let owner = depth_pixel(line_owner(pixel));
     set_line_ink(layer_ink(comics.layers_of_lines, owner_weights(comics.layers_of_lines, owner)));
 #endif
-    return inked(printed(colored(p, pixel), pixel));
+    return inked(printed(colored(p, pixel), pixel), pixel);
 }
 
 // What a pass draws for a later one. Larger numbers would become infinite. Later passes read each
@@ -253,7 +272,7 @@ fn numbered(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let place = position.xy + vec2<f32>(comics.view.viewport.xy);
     let pixel = vec2<i32>(place);
     set_view(comics.view);
-    let p = after_effects(before_effects(pixel, load_source(pixel)), pixel, place);
+    let p = after_effects(before_effects(pixel), pixel, place);
     return packed_number(layer_color(p), number_of(p));
 }
 #endif
@@ -266,13 +285,12 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let place = position.xy;
 #endif
     let pixel = vec2<i32>(place);
-    let stored = load_source(pixel);
     set_view(comics.view);
-    var p = before_effects(pixel, stored);
+    var p = before_effects(pixel);
 #ifndef INSIDE
     let inside = pixel - comics.view.viewport.xy;
     if any(inside < vec2(0)) || any(inside >= comics.view.viewport.zw) {
-        return stored;
+        return load_source(pixel);
     }
 #endif
     p = after_effects(p, pixel, place);
@@ -285,7 +303,7 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #endif
     var result = vec4(p.color, p.alpha);
 #ifdef FINISH
-    let opacity = clamp(finite(stored.a), 0.0, 1.0);
+    let opacity = clamp(finite(load_source(pixel).a), 0.0, 1.0);
     result = compare(comics.finish, vec4(p.original, opacity), result, p.inside.x);
 #endif
     return vec4(to_stored(result.rgb), result.a);

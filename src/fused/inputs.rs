@@ -9,11 +9,13 @@ use bevy::{
         },
         renderer::{RenderContext, RenderDevice},
         texture::CachedTexture,
+        view::ViewDepthTexture,
     },
 };
 
 use super::{blue_noise::BlueNoise, key::StylizeKey};
 use crate::{
+    composite::DRAWN_DEPTH_BINDING,
     depth::{
         prepare::ViewDepthRange,
         surfaces::{SurfaceParts, Surfaces},
@@ -44,7 +46,7 @@ impl LayerSampler {
 /// The textures and buffers that the services have prepared for the view in this
 /// frame.
 pub(super) type Found<'a> = (
-    SurfaceParts<'a>,
+    (SurfaceParts<'a>, Option<&'a ViewDepthTexture>),
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
     (Option<&'a ViewObjectIds>, Option<&'a ObjectDepths>),
@@ -85,7 +87,7 @@ impl Inputs<'_> {
 /// them is missing in this frame.
 pub(super) fn entries<'a>(
     key: &StylizeKey,
-    (surfaces, range, lines, (ids, places)): Found<'a>,
+    ((surfaces, drawn), range, lines, (ids, places)): Found<'a>,
     object_styles: &'a ObjectStyleBuffer,
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
@@ -128,6 +130,13 @@ pub(super) fn entries<'a>(
             OBJECT_DEPTHS_BINDING,
             places.table.as_entire_binding(),
         ));
+    }
+    if key.reads_drawn_depth() {
+        let depth = drawn.ok_or(not_ready)?;
+        if depth.texture.sample_count() != key.samples {
+            return Err(SkipReason::SampleCountMismatch);
+        }
+        entries.push(entry(DRAWN_DEPTH_BINDING, depth.view().into_binding()));
     }
     if key.blue_noise() {
         let tile = blue_noise.view().ok_or(not_ready)?;

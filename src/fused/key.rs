@@ -16,13 +16,13 @@ use bevy::{
 
 use super::{
     Plan,
-    compose::left_out,
+    compose::{left_out, masked_by},
     part::Part,
     passes::{Pass, Reads},
     words::{Boxes, Drawn, LAYER_FORMAT, Read, WORDS_FORMAT},
 };
 use crate::{
-    composite::DebugView,
+    composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},
     depth::view::ViewUniform,
     lines::{ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_depths_entry, object_styles_entry},
@@ -63,6 +63,15 @@ pub(crate) struct StylizeKey {
     /// Some objects are left alone: by the colour effects of the pass, by its prints.
     unstyled_colors: bool,
     unstyled_print: bool,
+    own_pixels: Option<OwnPixels>,
+    /// How far lines reach out of their objects in pixels, if these are found by their ids.
+    mask_reach: u32,
+    pub beyond: BeyondPrepass,
+    /// Whether colour effects of the pass, and its prints, change only some pixels.
+    masked_colors: bool,
+    masked_print: bool,
+    /// Of the effects that come after prints: whether they draw lines.
+    masked: Vec<(&'static str, bool)>,
     view: Option<DebugView>,
     map_flags: u32,
     finish: bool,
@@ -117,6 +126,12 @@ impl StylizeKey {
                 || needs.contains(Needs::OBJECT_ANCHORS),
             unstyled_colors: plan.unstyled,
             unstyled_print: plan.unstyled,
+            own_pixels: plan.own_pixels,
+            mask_reach: mask_reach(plan, facts),
+            beyond: plan.beyond,
+            masked_colors: plan.is_masked(),
+            masked_print: plan.is_masked(),
+            masked: masked(plan, facts),
             view: plan.view,
             map_flags: if needs.contains(Needs::MAP) {
                 inputs.view.depth.flags
@@ -169,6 +184,8 @@ impl StylizeKey {
             },
             unstyled_colors: self.unstyled_colors && has(|stage| stage <= EffectStage::Color),
             unstyled_print: self.unstyled_print && has(|stage| stage == EffectStage::Print),
+            masked_colors: self.masked_colors && has(|stage| stage <= EffectStage::Color),
+            masked_print: self.masked_print && has(|stage| stage == EffectStage::Print),
             view: self.view.filter(|_| !pass.layer),
             finish: self.finish && !pass.layer,
             continued: pass.continued && !matches!(pass.reads, Some(Reads::Numbers(_))),
@@ -279,6 +296,38 @@ impl StylizeKey {
         self.needs.contains(Needs::OBJECT_DEPTHS)
     }
 
+    /// Whether the depth of the main pass is read.
+    pub fn reads_drawn_depth(&self) -> bool {
+        self.beyond != BeyondPrepass::Styled
+    }
+
+    /// What says which pixels effects change, see `composite/mask.wgsl`.
+    fn mask_definitions(&self) -> Vec<ShaderDefVal> {
+        if self.own_pixels.is_none() && !self.reads_drawn_depth() {
+            return vec![];
+        }
+        let mut found = vec!["MASK".into()];
+        match self.own_pixels {
+            Some(OwnPixels::Depth) => found.push("MASKED_BY_DEPTH".into()),
+            Some(OwnPixels::Ids) => found.extend([
+                "MASKED_BY_IDS".into(),
+                ShaderDefVal::Int("MASK_REACH".into(), self.mask_reach as i32),
+            ]),
+            None => {}
+        }
+        if self.reads_drawn_depth() {
+            found.push("BEYOND_PREPASS".into());
+        }
+        if self.beyond == BeyondPrepass::Plain {
+            found.push("BEYOND_PLAIN".into());
+        }
+        let masked = |(name, is_line): &(&str, bool)| {
+            ShaderDefVal::UInt(masked_by(name), u32::from(*is_line))
+        };
+        found.extend(self.masked.iter().map(masked));
+        found
+    }
+
     pub fn blue_noise(&self) -> bool {
         self.needs.contains(Needs::BLUE_NOISE)
     }
@@ -311,6 +360,8 @@ impl StylizeKey {
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),
+            (self.masked_colors, "MASKED_COLORS"),
+            (self.masked_print, "MASKED_PRINT"),
             (self.continued, "CONTINUED"),
             (self.layer, "LAYER"),
             (self.inside, "INSIDE"),
@@ -333,6 +384,7 @@ impl StylizeKey {
         .chain(self.reads.shader_def())
         .chain(self.left_out.iter().map(|name| left_out(name).into()))
         .chain([number("MAP_FLAGS", self.map_flags)])
+        .chain(self.mask_definitions())
         .chain(self.variants.shader_defs())
         .collect()
     }
@@ -367,6 +419,7 @@ impl StylizeKey {
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
             (self.blue_noise(), words.clone().build(11, fragment)),
+            (self.reads_drawn_depth(), prepass(DRAWN_DEPTH_BINDING)),
         ];
         entries.extend(
             optional
@@ -376,6 +429,32 @@ impl StylizeKey {
         entries.extend(self.reads.binding().map(|at| words.build(at, fragment)));
         BindGroupLayoutDescriptor::new("comics_stylize", &entries)
     }
+}
+
+/// Half the width of the widest line in pixels, rounded up, if [`OwnPixels::Ids`] are read.
+fn mask_reach(plan: &Plan, facts: &EffectContext) -> u32 {
+    let lines = plan
+        .lines
+        .filter(|_| plan.own_pixels == Some(OwnPixels::Ids));
+    lines.map_or(2, |lines| {
+        (0.5 * lines.width * facts.scale_factor).ceil() as u32
+    })
+}
+
+/// The effects that come after prints, where effects change only some pixels; and whether they draw
+/// lines.
+fn masked(plan: &Plan, facts: &EffectContext) -> Vec<(&'static str, bool)> {
+    if !plan.is_masked() {
+        return vec![];
+    }
+    let later = plan
+        .drawn()
+        .filter(|effect| effect.effect_type().stage > EffectStage::Print);
+    let masked = |effect: &dyn AnyEffect| {
+        let is_line = effect.any_affected_area(facts) != AffectedArea::Everywhere;
+        (effect.effect_type().name, is_line)
+    };
+    later.map(masked).collect()
 }
 
 /// The shader definitions of a debug view.

@@ -7,8 +7,8 @@ use super::{Plan, ViewPlan, scene::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        FogUniform, LineModifiers, LineRequest, LineWeight, MapJumps, MemoryRequest, Outlines,
-        Sheet, SheetUniform,
+        FogUniform, LineFog, LineModifiers, LineRequest, LineWeight, MapJumps, MemoryRequest,
+        Outlines, Sheet, SheetUniform,
     },
     objects::Pressure,
 };
@@ -65,7 +65,7 @@ pub(super) fn line_request(
             settings.widest(widest_object, plan.vertex_widths),
         ),
         motion: has_motion(scene),
-        fog: plan.fog.then(|| fog(view)),
+        fog: plan.fog.then(|| fog(view, settings.fog)),
         fade: modifiers
             .fade
             .map(|fade| fade.uniform(facts.depth_axis, facts.depth_reference)),
@@ -133,8 +133,8 @@ pub(super) fn plain_request(
 }
 
 /// The fog that lines fade into.
-fn fog(view: &ViewPlan) -> FogUniform {
-    let fog = view.fog.unwrap_or_default();
+fn fog(view: &ViewPlan, lines: LineFog) -> FogUniform {
+    let fog = lines.seen(view.fog).unwrap_or_default();
     fog.uniform(&view.projection, &view.clip_from_view)
 }
 

@@ -3,7 +3,10 @@
 use crate::effect::Needs;
 
 use super::{Plan, device::DeviceLacks, plan::Planned};
-use crate::{composite::DebugView, diagnostics::SkipReason};
+use crate::{
+    composite::{BeyondPrepass, DebugView, OwnPixels},
+    diagnostics::SkipReason,
+};
 
 /// Inputs that a view may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +21,9 @@ impl Plan {
     #[must_use]
     pub fn on_device(mut self, lacks: DeviceLacks) -> Self {
         self.lacks = lacks;
+        if lacks.depth_copies {
+            self.beyond = BeyondPrepass::Styled;
+        }
         if lacks.object_ids {
             self.without(Input::ObjectIds)
         } else {
@@ -54,6 +60,8 @@ impl Plan {
                 plan.histogram = false;
                 plan.readback = false;
                 plan.unstyled = false;
+                plan.own_pixels = None;
+                plan.beyond = BeyondPrepass::Styled;
             }
             Input::NormalPrepass => {
                 plan.view = plan.view.filter(|v| *v != DebugView::Creases);
@@ -67,6 +75,7 @@ impl Plan {
                 plan.unstyled = false;
                 plan.anchored = false;
                 plan.marks = false;
+                plan.own_pixels = plan.own_pixels.map(|_| OwnPixels::Depth);
             }
         }
         plan.resolve();

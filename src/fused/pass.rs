@@ -13,7 +13,7 @@ use bevy::{
             SpecializedRenderPipeline, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
-        view::ViewTarget,
+        view::{ViewDepthTexture, ViewTarget},
     },
     shader::Shader,
 };
@@ -90,7 +90,10 @@ pub(super) fn stylize<const PRINTS: bool>(
     view: ViewQuery<(
         (&ViewTarget, &FusedRequest, &ViewFused, Option<&ViewLayers>),
         (
-            (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
+            (
+                (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
+                Option<&ViewDepthTexture>,
+            ),
             Option<&ViewDepthRange>,
             Option<&ViewLines>,
             (Option<&ViewObjectIds>, Option<&ObjectDepths>),

@@ -8,7 +8,7 @@ use bevy::ecs::world::EntityRef;
 
 use super::device::DeviceLacks;
 use crate::{
-    composite::{DebugView, Finish, SplitView, StyleWeight},
+    composite::{BeyondPrepass, DebugView, Finish, OwnPixels, SplitView, StyleWeight},
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::SkipReason,
     lines::{Creases, LineFog, Outlines, Silhouettes, has_fog},
@@ -55,6 +55,8 @@ pub(crate) struct Plan {
     pub anchored: bool,
     /// Some object is outlined by itself.
     pub marks: bool,
+    /// Some mesh fades at some distance.
+    pub fades: bool,
     /// Lines fade into the camera's distance fog.
     pub fog: bool,
     pub lacks: DeviceLacks,
@@ -64,6 +66,9 @@ pub(crate) struct Plan {
     pub histogram: bool,
     /// Some material reads the smoothed visible range.
     pub materials: bool,
+    /// Effects change only the pixels that the camera has drawn.
+    pub own_pixels: Option<OwnPixels>,
+    pub beyond: BeyondPrepass,
     pub finish: Finish,
     /// The debug view that replaces the picture.
     pub view: Option<DebugView>,
@@ -90,9 +95,11 @@ impl Plan {
             unstyled: objects.unstyled,
             anchored: objects.anchored,
             marks: objects.marks,
+            fades: objects.fades,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
+            beyond: camera.get().copied().unwrap_or_default(),
             finish: Finish::new(camera.get::<StyleWeight>(), camera.get::<SplitView>()),
             view: camera.get::<DebugView>().copied().filter(|view| {
                 let known = |name| types.iter().any(|t| t.name == name && t.view.is_some());
@@ -227,7 +234,11 @@ impl Plan {
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);
         self.unstyled &= colors;
-        self.fog &= self.lines.is_some_and(|lines| lines.fog == LineFog::Fade);
+        self.fog = self.lines.is_some_and(|lines| match lines.fog {
+            LineFog::Ignore => false,
+            LineFog::Fade => self.fog,
+            LineFog::Visibility { .. } => true,
+        });
         // The debug view of an effect that is not drawn shows nothing.
         if let Some(DebugView::Effect(name)) = self.view
             && !self.drawn().any(|effect| effect.effect_type().name == name)
@@ -309,7 +320,29 @@ impl Plan {
         } else {
             needs
         };
-        needs | self.view.map_or(Needs::empty(), DebugView::needs)
+        let mask = if self.drawn().next().is_some() {
+            self.mask_needs()
+        } else {
+            Needs::empty()
+        };
+        needs | mask | self.view.map_or(Needs::empty(), DebugView::needs)
+    }
+
+    /// Whether effects change only some pixels.
+    pub(super) fn is_masked(&self) -> bool {
+        self.own_pixels.is_some() || self.beyond != BeyondPrepass::Styled
+    }
+
+    /// What says which pixels effects change.
+    fn mask_needs(&self) -> Needs {
+        let own = self.own_pixels.map_or(Needs::empty(), |own| match own {
+            OwnPixels::Depth => Needs::DEPTH,
+            OwnPixels::Ids => Needs::IDS,
+        });
+        match self.beyond {
+            BeyondPrepass::Styled => own,
+            BeyondPrepass::NoLines | BeyondPrepass::Plain => own | Needs::DEPTH,
+        }
     }
 
     /// Whether anything is drawn.
@@ -363,6 +396,8 @@ impl Plan {
         let lines = self.lines;
         lines.is_some_and(|lines| lines.creases.is_some() || lines.weight.reads_normals())
             || self.needs().contains(Needs::NORMALS)
+            // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
+            || (self.fades && self.needs_depth())
     }
 
     /// Whether the ids of objects are drawn for this camera.

@@ -8,6 +8,7 @@ use bevy::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
+    math::{Vec2, Vec4Swizzles},
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
@@ -222,18 +223,25 @@ impl ChosenPart {
 }
 
 fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
-    ViewUniform::new(
+    let nearest = view.backdrop.map(|at| view.projection.raw_depth(at.into()));
+    let uniform = ViewUniform::new(
         scene.viewport,
         scene.main_pass_size,
         plan.depth_map.flip,
-        raw_depth(view, scene),
+        raw_depth(view, plan, scene),
         view.projection.frame(&plan.depth_map),
-    )
+    );
+    ViewUniform {
+        backdrop: nearest.unwrap_or(0.0).max(0.0) as f32,
+        jitter: scene.jitter.unwrap_or_default() / uniform.depth_scale.max(Vec2::splat(1e-6)),
+        ..uniform
+    }
 }
 
 /// How the texels of the depth texture become raw depth.
-fn raw_depth(view: &ViewPlan, scene: &Scene) -> RawDepth {
-    view.projection.raw(&view.clip_from_view, scene.drawn())
+fn raw_depth(view: &ViewPlan, plan: &Plan, scene: &Scene) -> RawDepth {
+    let sky = plan.depth_map.sky_beyond;
+    (view.projection).raw(&view.clip_from_view, scene.drawn(), sky)
 }
 
 fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {
@@ -242,7 +250,8 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         camera: view.camera,
         map: plan.depth_map,
         projection: view.projection,
-        raw: raw_depth(view, scene),
+        raw: raw_depth(view, plan, scene),
+        viewport: scene.viewport.zw(),
         rect: scene.drawn(),
         samples,
         smooths: plan.smooths(),

@@ -6,11 +6,15 @@ use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
     math::{UVec2, UVec4, Vec2},
-    render::{camera::TemporalJitter, view::ExtractedView},
+    render::{
+        camera::TemporalJitter,
+        render_resource::TextureUsages,
+        view::{ExtractedView, ViewDepthTexture},
+    },
 };
 
 use super::{Plan, missing::Input};
-use crate::{depth::view::depth_rect, objects::QueuedDepth};
+use crate::{composite::BeyondPrepass, depth::view::depth_rect, objects::QueuedDepth};
 
 /// The inputs that a view provides.
 #[derive(Clone, Copy)]
@@ -26,14 +30,29 @@ pub(super) struct Scene {
     pub normals: bool,
     /// The engine draws motion vectors.
     pub motion: bool,
+    /// The depth of the main pass can be read.
+    pub drawn_depth: bool,
     /// Transparent meshes are drawn with their ids.
     pub ids_queued: bool,
+}
+
+/// The textures of a view, and what is drawn into copies of them.
+pub(super) type SceneTextures<'a> = (
+    Option<&'a ViewPrepassTextures>,
+    Option<&'a ViewDepthTexture>,
+    Option<&'a QueuedDepth>,
+);
+
+/// Whether shaders can read the depth of the main pass.
+fn can_be_read(depth: &ViewDepthTexture) -> bool {
+    let usage = depth.texture.usage();
+    usage.contains(TextureUsages::TEXTURE_BINDING)
 }
 
 impl Scene {
     pub fn new(
         extracted: &ExtractedView,
-        (prepass, queued): (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
+        (prepass, drawn, queued): SceneTextures,
         // The engine sets both in the render world.
         (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
     ) -> Self {
@@ -49,6 +68,7 @@ impl Scene {
             }),
             normals: prepass.is_some_and(|textures| textures.normal.is_some()),
             motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
+            drawn_depth: drawn.is_some_and(can_be_read),
             ids_queued: queued.is_some_and(|queued| queued.ids),
         }
     }
@@ -69,6 +89,9 @@ impl Scene {
         }
         if (!self.normals || unreadable) && reduced.needs_normals() {
             reduced = Arc::new(reduced.without(Input::NormalPrepass));
+        }
+        if !self.drawn_depth && reduced.beyond != BeyondPrepass::Styled {
+            Arc::make_mut(&mut reduced).beyond = BeyondPrepass::Styled;
         }
         reduced
     }

@@ -30,6 +30,8 @@ pub(crate) struct ViewPlan {
     pub fog: Option<ViewFog>,
     /// World position of the object that effects point at.
     pub target: Option<Vec3>,
+    /// A distance in world units below which there is no `Backdrop`, if the plan needs it and there are any.
+    pub backdrop: Option<f32>,
     /// Seconds of the app's default clock.
     pub time: f64,
     /// Real time since the last frame, in seconds. Not the game's time: the camera

@@ -228,6 +228,7 @@ pub(crate) fn assign_object_styles(
         sections: styles.sections,
         marks: styles.marks,
         widths: styles.widths,
+        fades: styles.fades,
         ..Default::default()
     };
     for entity in bare.keys() {

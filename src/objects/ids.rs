@@ -19,7 +19,7 @@ use bevy::{
         camera::DirtySpecializations,
         render_resource::TextureUsages,
         renderer::RenderDevice,
-        sync_world::MainEntity,
+        sync_world::{MainEntity, MainEntityHashSet},
         texture::TextureCache,
         view::{
             ExtractedView, Msaa, RenderVisibleEntities, RenderVisibleEntitiesClass,
@@ -36,10 +36,11 @@ use super::{
     groups::ObjectGroups,
     items::{Drawn, IdItems, Missing},
     layer::LayerRequest,
+    levels::{FadingMeshes, Levels},
     line_widths::WidthViews,
     marks::Marks,
     object_ids::ObjectIds,
-    phase::{Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
+    phase::{Bin, Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
     sections::{SectionBuffer, SectionTables},
     transparent::TransparentItems,
 };
@@ -84,6 +85,7 @@ type WithIds = Or<(
 
 /// What is drawn for a view, and how its prepass is drawn.
 type Queued<'w> = (
+    Option<&'w FadingMeshes>,
     (
         Option<&'w IdsWanted>,
         Option<&'w IdRequest>,
@@ -120,8 +122,8 @@ pub(super) fn queue_object_ids(
     for phase in phases.0.values_mut() {
         phase.live = false;
     }
-    for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals, has_motion))) in &views
-    {
+    for (entity, view, visible, (fading, ids, (wanted, queued), msaa)) in &views {
+        let (msaa, has_normals, has_motion) = msaa;
         let widths = with_widths.decide(view.retained_view_entity, ids.0, ids.1);
         let asked = ids.0.copied().unwrap_or_default();
         let layer = asked.layer || ids.2;
@@ -136,6 +138,7 @@ pub(super) fn queue_object_ids(
             MeshPipelineKey::from_msaa_samples(msaa.samples()) | MeshPipelineKey::DEPTH_PREPASS;
         // The engine then binds the view with the uniform of the last frame.
         view_key.set(MeshPipelineKey::MOTION_VECTOR_PREPASS, has_motion);
+        view_key.set(MeshPipelineKey::INVERT_CULLING, view.invert_culling);
         let key = PhaseKey {
             view: view_key,
             ids: ids.0 || ids.1,
@@ -155,6 +158,7 @@ pub(super) fn queue_object_ids(
             records: &mut records,
             key,
         };
+        queue.fade(fading, class);
         queue.update((view.retained_view_entity, class), &changes);
         if test.compiles_ahead() {
             phase.note_ahead(&test, &items);
@@ -215,6 +219,31 @@ impl Queue<'_, '_> {
         self.phase.settle();
     }
 
+    /// Takes away the meshes that begin or end to fade; [`update`](Self::update) adds them again.
+    fn fade(&mut self, fading: Option<&FadingMeshes>, class: &RenderVisibleEntitiesClass) {
+        let now = match fading.filter(|_| self.key.targets.is_some()) {
+            Some(fading) => fading.0.clone(),
+            None if self.phase.fading.is_empty() => return,
+            None => MainEntityHashSet::default(),
+        };
+        let changed = now.symmetric_difference(&self.phase.fading).copied();
+        let changed: Vec<_> = changed.collect();
+        self.phase.fading = now;
+        for mesh in changed {
+            self.phase.remove(mesh, &mut self.records.ids);
+            if is_visible(class, mesh) {
+                self.phase.pending.insert(mesh);
+            }
+        }
+    }
+
+    /// The bin of a mesh that fades: it is drawn whole into the depth that effects read.
+    fn fading_bin(&mut self, mesh: MainEntity) -> Option<Result<(Bin, u32), Missing>> {
+        let targets = self.key.targets?;
+        let fades = self.phase.fading.contains(&mesh);
+        fades.then(|| self.transparent.fading_bin(mesh, self.key.view, targets))
+    }
+
     /// Adds a visible mesh, if it is not there.
     fn add(&mut self, mesh: MainEntity) {
         if self.phase.contains(mesh) {
@@ -223,15 +252,16 @@ impl Queue<'_, '_> {
         let drawn = Drawn::Ids {
             widths: self.key.widths,
         };
-        let mut found = Err(Missing::NotDrawn);
-        if self.key.ids {
+        let fading = self.fading_bin(mesh);
+        let mut found = fading.unwrap_or(Err(Missing::NotDrawn));
+        if fading.is_none() && self.key.ids {
             found = self.items.bin(mesh, self.key.view, drawn);
         }
         if let (Err(Missing::NotDrawn), Some(targets)) = (found, self.key.targets) {
             found = self.transparent.bin(mesh, self.key.view, targets);
         }
         if let Ok((bin, input)) = found {
-            let record = self.records.of(mesh.id());
+            let record = self.records.of(mesh.id(), fading.is_some());
             self.phase.add(bin, Instance::new(mesh, input, record));
         }
         if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
@@ -256,12 +286,16 @@ fn is_visible(class: &RenderVisibleEntitiesClass, mesh: MainEntity) -> bool {
     listed.is_ok() || class.entities_gpu_culling.contains_key(&mesh)
 }
 
+/// The least alpha of meshes with an alpha mask that fade: the default of the engine's materials.
+const MASKED_ALPHA: f32 = 0.5;
+
 /// What is known of objects by their entities.
 #[derive(SystemParam)]
 pub(super) struct Records<'w> {
     ids: ResMut<'w, ObjectIds>,
     styles: Res<'w, ObjectStyles>,
     groups: Res<'w, ObjectGroups>,
+    levels: Res<'w, Levels>,
     marks: Res<'w, Marks>,
     writes: Res<'w, DepthWrites>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
@@ -269,12 +303,13 @@ pub(super) struct Records<'w> {
 
 impl Records<'_> {
     /// Id, style slot, first word of the sections and bits of the least alpha of a mesh.
-    fn of(&mut self, mesh: Entity) -> [u32; 4] {
+    fn of(&mut self, mesh: Entity, fades: bool) -> [u32; 4] {
         let slot = self.styles.slots.get(&mesh).copied().unwrap_or(0);
-        let id = self.ids.give(self.groups.object(mesh));
+        let id = self.ids.give(self.levels.object(self.groups.object(mesh)));
         let (buffer, tables) = &self.sections;
         let start = buffer.start(tables, mesh).unwrap_or(0);
         let cutoff = self.writes.cutoffs.get(&mesh);
+        let cutoff = cutoff.copied().or(fades.then_some(MASKED_ALPHA));
         [
             u32::from(id),
             u32::from(slot),

@@ -16,9 +16,9 @@ use bevy::{
     },
     mesh::{BaseMeshPipelineKey, Mesh},
     pbr::{
-        DrawMesh, MeshPipelineKey, PreparedMaterial, RenderMaterialInstances, RenderMeshInstances,
-        RenderMeshQueueData, SetMaterialBindGroup, SetMeshBindGroup,
-        SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup, SkinUniforms,
+        DrawMesh, MaterialVertexShader, MeshPipelineKey, PreparedMaterial, PrepassVertexShader,
+        RenderMaterialInstances, RenderMeshInstances, RenderMeshQueueData, SetMaterialBindGroup,
+        SetMeshBindGroup, SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup, SkinUniforms,
     },
     platform::sync::Arc,
     render::{
@@ -36,6 +36,7 @@ use bevy::{
 };
 
 use super::{
+    backdrop::Backdrops,
     depth_test::{DepthTest, TolerantIds},
     lightmaps::MeshLightmaps,
     line_widths::{WideMeshes, WidthBindings},
@@ -233,6 +234,7 @@ pub(super) struct IdItems<'w> {
     marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
     wide: Res<'w, WideMeshes>,
     test: Res<'w, DepthTest>,
+    backdrops: Res<'w, Backdrops>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
     pub cache: Res<'w, PipelineCache>,
 }
@@ -261,8 +263,16 @@ impl IdItems<'_> {
         what: Drawn,
     ) -> Result<(Bin, u32), Missing> {
         let drawn = self.drawn.get(entity)?;
-        if !in_prepass(drawn.properties) {
+        if !in_prepass(drawn.properties) || self.backdrops.contains(entity.id()) {
             return Err(Missing::NotDrawn);
+        }
+        let moves = drawn.properties.get_shader(MaterialVertexShader).is_some();
+        if moves && drawn.properties.get_shader(PrepassVertexShader).is_none() {
+            warn_once!(
+                "the material of {entity:?} has a vertex shader, but none for the prepass: if it moves \
+                 vertices, pixels are lost; implement `prepass_vertex_shader`, or return false from \
+                 `enable_prepass`"
+            );
         }
         let uses_material = reads_material(drawn.properties);
         let key = drawn.material_key(drawn.mesh_key(view_key, uses_material));

@@ -5,6 +5,8 @@
 #[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
+mod backdrop;
+#[cfg(feature = "objects")]
 mod depth_test;
 #[cfg(feature = "objects")]
 mod depths;
@@ -24,6 +26,8 @@ mod instances;
 mod items;
 #[cfg(feature = "objects")]
 mod layer;
+#[cfg(feature = "objects")]
+mod levels;
 #[cfg(feature = "objects")]
 mod lightmaps;
 #[cfg(feature = "objects")]
@@ -57,6 +61,10 @@ mod components;
 #[cfg(feature = "objects")]
 pub use anchors::PatternAnchor;
 #[cfg(feature = "objects")]
+pub use backdrop::Backdrop;
+#[cfg(feature = "objects")]
+pub(crate) use backdrop::{BackdropBoxes, Backdrops, nearest_backdrop};
+#[cfg(feature = "objects")]
 pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
 pub use depth_test::ObjectIdDepthTest;
@@ -64,6 +72,8 @@ pub use depth_test::ObjectIdDepthTest;
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub(crate) use layer::{LayerRequest, ViewLayer};
+#[cfg(feature = "objects")]
+pub(crate) use levels::{FadingMeshes, LevelPlaces, Levels};
 #[cfg(feature = "objects")]
 pub use line_widths::LineWidths;
 #[cfg(feature = "objects")]
@@ -253,6 +263,8 @@ impl Plugin for ObjectsPlugin {
                         .after(bevy::transform::TransformSystems::Propagate),
                 );
             inherit::build(app);
+            backdrop::build(app);
+            levels::build(app);
             depth_test::build(app);
             marks::build(app);
             groups::build(app);

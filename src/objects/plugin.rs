@@ -4,6 +4,7 @@ use bevy::{
     app::{App, SubApp},
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::schedule::IntoScheduleConfigs,
+    pbr::queue_prepass_material_meshes,
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_phase::{AddRenderCommand, DrawFunctions},
@@ -12,6 +13,7 @@ use bevy::{
 };
 
 use super::{
+    backdrop::{Backdrops, extract_backdrops, remove_backdrops},
     changes::{self, NoteChanges},
     depth_test::{self, count_ids},
     depths,
@@ -21,6 +23,7 @@ use super::{
     instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
     layer::prepare_layers,
+    levels::{Levels, extract_levels},
     lightmaps::{Lightmapped, extract_lightmapped},
     line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
     marks::{Marks, extract_marks},
@@ -42,6 +45,8 @@ pub(crate) fn build(app: &mut App) {
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
         .init_gpu_resource::<SpecializedMeshPipelines<MarkSpecializer>>()
         .init_resource::<Marks>()
+        .init_resource::<Levels>()
+        .init_resource::<Backdrops>()
         .init_gpu_resource::<SectionBuffer>()
         .init_resource::<SectionTables>()
         .init_gpu_resource::<ObjectIdPhases>()
@@ -73,6 +78,8 @@ fn add_systems(render_app: &mut SubApp) {
                 extract_object_groups,
                 extract_sections,
                 extract_marks,
+                extract_levels,
+                extract_backdrops,
                 extract_wide_meshes,
                 extract_lightmapped,
             )
@@ -82,7 +89,12 @@ fn add_systems(render_app: &mut SubApp) {
             Render,
             (
                 prepare_sections.in_set(RenderSystems::PrepareAssets),
-                queue_object_ids.in_set(RenderSystems::QueueMeshes),
+                (
+                    remove_backdrops.after(queue_prepass_material_meshes),
+                    queue_object_ids,
+                )
+                    .chain()
+                    .in_set(RenderSystems::QueueMeshes),
                 place_instances.in_set(RenderSystems::PrepareResourcesBatchPhases),
                 bind_instances.in_set(RenderSystems::PrepareBindGroups),
                 (prepare_object_ids, prepare_layers, update_mark_styles)

@@ -60,6 +60,8 @@ pub(crate) struct ObjectStyles {
     pub marks: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub widths: bool,
+    /// Some mesh fades at some distance.
+    pub fades: bool,
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
@@ -92,6 +94,8 @@ pub(crate) struct ObjectChanges {
     pub marks: bool,
     /// Screens follow some object.
     pub anchored: bool,
+    /// Some mesh fades at some distance.
+    pub fades: bool,
 }
 
 impl ObjectStyles {
@@ -110,6 +114,7 @@ impl ObjectStyles {
             widths: self.widths,
             unstyled,
             marks: self.marks,
+            fades: self.fades,
             anchored: self.entries.iter().any(|e| e.anchor_size > 0.0),
         }
     }

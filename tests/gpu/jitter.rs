@@ -2,6 +2,7 @@
 //! every frame, and the lines stay at the edges that they belong to.
 
 use bevy::render::camera::TemporalJitter;
+use bevy_comics::effects::IsoField;
 
 use crate::{
     outlines::{ink, put, removed},
@@ -180,4 +181,47 @@ fn lines_stay_at_their_edge_under_temporal_anti_aliasing() {
         }
     }
     assert_eq!(small.errors(), 0);
+}
+
+/// Strokes and lines of equal height lie on surfaces: in a still view they stand still, while the engine moves depth.
+#[test]
+fn strokes_and_iso_lines_stand_still() {
+    let size = UVec2::new(192, 128);
+    for style in [
+        ComicStyle::new().with(Hatching::default()),
+        ComicStyle::new().with(IsoLines {
+            field: IsoField::Height,
+            step: 0.2,
+            ..default()
+        }),
+    ] {
+        let mut small = Small::new(size, Msaa::Off);
+        small.clear();
+        // At the rim of an object, the depth of another surface is drawn in some frames.
+        let ground = Plane3d::default().mesh().size(400.0, 400.0);
+        small.put(
+            ground,
+            unlit(Color::srgb(0.4, 0.4, 0.4)),
+            Transform::IDENTITY,
+        );
+        let down = Transform::from_xyz(0.0, 3.0, 2.0).looking_at(Vec3::ZERO, Vec3::Y);
+        small.insert((TemporalAntiAliasing::default(), down));
+        small.style(&style);
+        small.headless.step(30);
+        let still = small.picture();
+        for _ in 0..8 {
+            small.headless.step(1);
+            let picture = small.picture();
+            let pixels = picture.pixels().zip(still.pixels());
+            let change = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
+                (0..3).map(|c| a.0[c].abs_diff(b.0[c])).max()
+            };
+            let changes: Vec<_> = pixels.filter_map(change).collect();
+            let more_than = |codes| changes.iter().filter(|change| **change > codes).count();
+            // The strokes lie where the position says, to a hundredth of a pixel.
+            let [some, many] = [2, 16].map(more_than);
+            assert!(some < changes.len() / 100 && many == 0, "{style:?}: {some}, {many}");
+        }
+        assert_eq!(small.errors(), 0);
+    }
 }

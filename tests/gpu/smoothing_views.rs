@@ -2,7 +2,10 @@
 
 use bevy::camera::CameraProjection;
 
-use crate::{prelude::*, range_views::assert_range_is_the_scan, small::Reshaped};
+use crate::{
+    prelude::*, range_views::assert_range_is_the_scan, small::Reshaped,
+    upscaled::override_main_pass,
+};
 
 /// Slow enough to see, exact once it has arrived.
 const SLOW: RangeSmoothing = RangeSmoothing {
@@ -93,6 +96,22 @@ fn a_cut_a_resize_and_another_near_plane_start_anew() {
         let anew = small.picture();
         assert_eq!(anew, unsmoothed(&mut small), "{name}");
     }
+}
+
+/// Games lower the resolution of the main pass while they run.
+#[test]
+fn another_resolution_does_not_start_anew() {
+    let mut small = small();
+    intrude(&mut small);
+    small.headless.step(1);
+    let scaled = |scale: f32| Some((size().as_vec2() * scale).as_uvec2());
+    for scale in [0.7, 1.0, 0.7, 1.0] {
+        override_main_pass(&mut small, scaled(scale));
+        small.headless.step(1);
+    }
+    override_main_pass(&mut small, None);
+    small.headless.step(1);
+    assert!(small.picture() != unsmoothed(&mut small));
 }
 
 #[test]

@@ -267,6 +267,25 @@ fn lines_fade_as_black_surfaces_do() {
     }
 }
 
+/// Without any fog of the engine: 2 % of a line is left at the visibility, and 14 % at half of it.
+#[test]
+fn lines_fade_by_visibility() {
+    let mut small = towards_the_sky(SIZE);
+    small.clear();
+    small.insert(Transform::IDENTITY);
+    wall(&mut small, [-100.0, -100.0], [0.0, 100.0], 20.0);
+    wall(&mut small, [-100.0, -100.0], [100.0, 100.0], 40.0);
+    for (distance, left) in [(20.0, 0.02), (40.0, 0.1414), (1e9, 1.0), (f32::NAN, 0.9247)] {
+        let outlines = Outlines {
+            fog: LineFog::Visibility { distance },
+            ..silhouettes(4.0, LineWeight::EVEN)
+        };
+        let picture = drawn(&mut small, outlines);
+        let found = ink_across(&picture, 40..56, 32) / 4.0;
+        assert!((found - left).abs() < 0.012, "{distance}: {found}, {left}");
+    }
+}
+
 /// The picture without lines, of a wall that is painted black.
 fn fogged_black(small: &mut Small, wall: Entity) -> image::RgbaImage {
     small.style(&ComicStyle::new());

@@ -173,6 +173,12 @@ fn step_response(excess: vec4<f32>, k: vec4<f32>) -> vec4<f32> {
     return min(r * r, vec4(1.0));
 }
 
+// Whether a surface ends in front of the sky. That is a step, however close to the far plane it is:
+// the sky is no surface there.
+fn ends_at_sky(here: vec4<f32>, there: vec4<f32>) -> vec4<bool> {
+    return (min(here, there) <= vec4(0.0)) & (max(here, there) > vec4(0.0));
+}
+
 // Whether a raw depth is that of a surface in front of another one. `jump`: the difference that
 // separates two surfaces.
 fn is_in_front(d: f32, other: f32, jump: f32) -> bool {

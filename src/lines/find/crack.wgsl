@@ -10,7 +10,7 @@
 #import bevy_comics::lines::simplification::response_factor
 #endif
 #import bevy_comics::lines::edge::{
-    CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
+    CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, ends_at_sky, fold_response, pack_ink, step_response,
 }
 #ifdef LEDGES
 #import bevy_comics::lines::ledge::may_be_ledge
@@ -116,7 +116,8 @@ struct Found {
 #ifdef SILHOUETTES
 fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, kinds: vec4<u32>) -> Found {
     var found = before;
-    let response = step_response(at.excess * sqrt(response_factors(at)), s.silhouette_k * reference);
+    let step = step_response(at.excess * sqrt(response_factors(at)), s.silhouette_k * reference);
+    let response = select(step, vec4(1.0), ends_at_sky(at.here, at.there));
     let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
     let exists = max(at.here, at.there) > vec4(0.0);
     let silhouette = has(kinds, SILHOUETTE) & exists & (byte(ink) > vec4(0u)) & !at.outdone;

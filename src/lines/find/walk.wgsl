@@ -7,7 +7,7 @@
 // A few blocks without cracks are noted too.
 
 #import bevy_comics::depth::view::set_view
-#import bevy_comics::lines::edge::{Lines, may_be_crease, may_be_silhouette}
+#import bevy_comics::lines::edge::{Lines, ends_at_sky, may_be_crease, may_be_silhouette}
 #ifdef LEDGES
 #import bevy_comics::lines::ledge::may_be_ledge
 #endif
@@ -40,7 +40,7 @@ const LAST_ROW: i32 = ROWS;
 fn may_be_cracks(s: Lines, at: Borders) -> bool {
     var found = vec4(false);
 #ifdef SILHOUETTES
-    found = may_be_silhouette(s, at.excess, max(at.here, at.there));
+    found = may_be_silhouette(s, at.excess, max(at.here, at.there)) | ends_at_sky(at.here, at.there);
 #endif
 #ifdef CREASES
     found |= may_be_crease(s, at.folds);

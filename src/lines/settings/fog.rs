@@ -8,21 +8,56 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::depth::{ProjectionKind, frame::DepthProjection};
+use crate::{
+    depth::{ProjectionKind, frame::DepthProjection},
+    settings::{FieldRange, clamp_or_default},
+};
 
-/// What happens to lines in the engine's `DistanceFog`, if the camera has it.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+/// What happens to lines in fog.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum LineFog {
     /// Nothing: lines are as strong in the fog as elsewhere.
     Ignore,
-    /// They fade by the fog in front of the surface that they belong to. Lines of the faithful
-    /// forms do not. Needs compute shaders, and the crate's feature `objects` or `toon`.
-    /// Other fog (volumetric, or drawn by materials of the game) is not known, nor are
-    /// materials without fog (`fog_enabled: false`).
+    /// They fade by the engine's `DistanceFog` in front of the surface that they belong to, if the
+    /// camera has it. Lines of the faithful forms do not. Needs compute shaders, and the crate's
+    /// feature `objects` or `toon`. Other fog is not known, nor are materials without fog
+    /// (`fog_enabled: false`).
     #[default]
     Fade,
+    /// They fade with distance, whatever fog there is: for `Atmosphere`, volumetric fog and fog of
+    /// the game's own. Needs compute shaders.
+    Visibility {
+        /// Distance at which 2 % of a line is left, in world units (Koschmieder's visibility).
+        /// Range 0.001 to 1e9; 1000 if it is not finite.
+        #[reflect(@FieldRange::logarithmic(1e-3, 1e9).unit("units"))]
+        distance: f32,
+    },
 }
+
+impl LineFog {
+    /// The fog that lines fade into. `distance_fog`: that of the camera.
+    pub(crate) fn seen(self, distance_fog: Option<ViewFog>) -> Option<ViewFog> {
+        match self {
+            Self::Ignore => None,
+            Self::Fade => distance_fog,
+            Self::Visibility { distance } => Some(ViewFog {
+                falloff: EXPONENTIAL,
+                // The contrast that is left at the visibility is 2 %.
+                numbers: Vec3::new(
+                    -(0.02_f32.ln()) / clamp_or_default(distance, 1000.0, 1e-3, 1e9),
+                    0.0,
+                    0.0,
+                ),
+                most: 1.0,
+            }),
+        }
+    }
+}
+
+/// [`ViewFog::falloff`] by one density.
+const EXPONENTIAL: u32 = 1;
 
 /// Whether a camera has the engine's distance fog.
 pub(crate) fn has_fog(camera: EntityRef) -> bool {

@@ -8,7 +8,7 @@ use bevy::{
         system::{Commands, Res, ResMut, SystemParam},
     },
     log::{error_once, warn_once},
-    material::{MaterialProperties, key::ErasedMaterialPipelineKey},
+    material::{AlphaMode, MaterialProperties, key::ErasedMaterialPipelineKey},
     mesh::MeshVertexBufferLayoutRef,
     pbr::{Material, MeshPipelineKey, PrepassFragmentShader, StandardMaterial},
     platform::sync::Arc,
@@ -138,6 +138,34 @@ impl TransparentItems<'_> {
         }
         let cutoff = self.own.has_cutoff(entity, properties);
         let cutoff = cutoff.ok_or(Missing::NotDrawn)?;
+        self.bin_of(entity, view_key, targets, cutoff)
+    }
+
+    /// The same for a mesh of the prepass that fades.
+    pub fn fading_bin(
+        &mut self,
+        entity: MainEntity,
+        view_key: MeshPipelineKey,
+        targets: QueuedDepth,
+    ) -> Result<(Bin, u32), Missing> {
+        let drawn = self.drawn.get(entity)?;
+        if !in_prepass(drawn.properties) {
+            return Err(Missing::NotDrawn);
+        }
+        let is_masked = matches!(drawn.properties.alpha_mode, AlphaMode::Mask(_));
+        let cutoff = is_masked && self.own.has_cutoff(entity, drawn.properties) == Some(true);
+        self.bin_of(entity, view_key, targets, cutoff)
+    }
+
+    fn bin_of(
+        &mut self,
+        entity: MainEntity,
+        view_key: MeshPipelineKey,
+        targets: QueuedDepth,
+        cutoff: bool,
+    ) -> Result<(Bin, u32), Missing> {
+        let drawn = self.drawn.get(entity)?;
+        let properties = drawn.properties;
         let uses_material = cutoff || reads_material(properties);
         let mut mesh_key = drawn.mesh_key(view_key, uses_material);
         mesh_key.set(MeshPipelineKey::NORMAL_PREPASS, targets.normals);

@@ -1,0 +1,93 @@
+#define_import_path bevy_comics::composite::mask
+
+// Which part of a pixel the effects of a camera change, see StyleMask and BeyondPrepass: the only
+// module that declares binding 33.
+
+#ifdef MASK
+#import bevy_comics::depth::view::{depth_pixel, inside_viewport}
+#endif
+#ifdef MASKED_BY_DEPTH
+#import bevy_comics::depth::map::is_background
+#import bevy_comics::depth::view::texel_depth
+#endif
+#ifdef MASKED_BY_IDS
+#import bevy_comics::objects::texel_object
+#endif
+#ifdef BEYOND_PREPASS
+#import bevy_comics::depth::raw::raw_depth
+#import bevy_comics::depth::view::{texel_depth, view}
+
+// The depth that the main pass has drawn.
+#ifdef MULTISAMPLED
+@group(0) @binding(33) var drawn_depth: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(33) var drawn_depth: texture_2d<f32>;
+#endif
+
+// What is nearer than the surface of the prepass by this part of its distance is another surface.
+const NEARER: f32 = 1.002;
+
+// Whether the picture shows something that is not in the prepass, at a pixel and sample of the
+// prepass textures.
+fn is_beyond_prepass(at: vec2<i32>, sample: i32) -> bool {
+#ifdef MULTISAMPLED
+    let drawn = textureLoad(drawn_depth, at, sample).r;
+#else
+    let drawn = textureLoad(drawn_depth, at, 0).r;
+#endif
+    let raw = raw_depth(view.raw, vec2<u32>(at), drawn);
+    return raw > view.backdrop && raw > NEARER * texel_depth(at, sample);
+}
+#endif
+
+#ifdef MASKED_BY_IDS
+// Whether the camera has drawn an object where lines at this pixel may come from: half of a line
+// lies outside of its object. Elsewhere, lines are those of what another camera has drawn.
+fn is_near_own(pixel: vec2<i32>) -> bool {
+    var found = false;
+    for (var i = 0; i < 18; i++) {
+        let reach = #{MASK_REACH} / (1 + i / 9);
+        let there = inside_viewport(pixel + reach * (vec2(i % 3, (i / 3) % 3) - 1));
+        found |= texel_object(depth_pixel(there), 0).x != 0u;
+    }
+    return found;
+}
+#endif
+
+#ifdef MASK
+// The fraction of a pixel that effects change: x: those that change all pixels, y: lines.
+fn changed_fractions(pixel: vec2<i32>) -> vec2<f32> {
+    let at = depth_pixel(pixel);
+#ifdef MULTISAMPLED
+    let samples = #{SAMPLES};
+#else
+    let samples = 1;
+#endif
+    var sum = vec2(0.0);
+    for (var s = 0; s < samples; s++) {
+        var changed = vec2(1.0);
+#ifdef MASKED_BY_IDS
+        changed.x = select(0.0, 1.0, texel_object(at, s).x != 0u);
+#endif
+#ifdef MASKED_BY_DEPTH
+        changed.x = select(1.0, 0.0, is_background(texel_depth(at, s)));
+#endif
+#ifdef BEYOND_PREPASS
+        if is_beyond_prepass(at, s) {
+#ifdef BEYOND_PLAIN
+            changed = vec2(0.0);
+#else
+            changed.y = 0.0;
+#endif
+        }
+#endif
+        sum += changed;
+    }
+    let changed = sum / f32(samples);
+#ifdef MASKED_BY_IDS
+    return vec2(changed.x, select(0.0, changed.y, is_near_own(pixel)));
+#else
+    return changed;
+#endif
+}
+#endif

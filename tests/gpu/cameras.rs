@@ -1,0 +1,392 @@
+//! Cameras that draw over the picture of others, and mirrors.
+
+use bevy::{
+    camera::{
+        Camera3dDepthLoadOp, CameraProjection, ClearColorConfig, Projection,
+        visibility::RenderLayers,
+    },
+    math::Vec4,
+    render::render_resource::AsBindGroup,
+};
+use bevy_comics::cameras::{BeyondPrepass, ComicOverlay, StyleMask, overlay_camera};
+
+use crate::{prelude::*, small::Reshaped};
+
+/// Effects of every stage that change every pixel, and lines.
+fn comic() -> ComicStyle {
+    ComicStyle::new()
+        .with(ToneBands {
+            levels: 3,
+            ..default()
+        })
+        .with(Colorization {
+            amount: 1.0,
+            ..Colorization::SEPIA
+        })
+        .with(Halftone::default())
+        .with(Outlines::default())
+        .with(Vignette::default())
+}
+
+/// The layer of the second camera.
+fn own_layer() -> RenderLayers {
+    RenderLayers::layer(1)
+}
+
+/// A green cube that only the second camera sees, before the others.
+fn cube(small: &mut Small, color: Color) -> Entity {
+    let at = Transform::from_xyz(0.6, 1.1, 3.0).with_rotation(Quat::from_rotation_y(0.6));
+    let cube = small.put(Cuboid::default(), unlit(color), at);
+    small.world().entity_mut(cube).insert(own_layer());
+    cube
+}
+
+/// A second camera at the place of the first one.
+fn second(small: &mut Small, settings: impl Bundle, style: &ComicStyle) -> Entity {
+    let first = small.camera;
+    let world = small.world();
+    let camera = world.entity(first);
+    let copied = (
+        *camera.get::<Transform>().expect("a place"),
+        camera.get::<RenderTarget>().expect("a target").clone(),
+        *camera.get::<Msaa>().expect("samples"),
+    );
+    let is_hdr = camera.contains::<Hdr>();
+    let plain = (Tonemapping::None, DebandDither::Disabled, own_layer());
+    let second = (Camera3d::default(), settings, copied, plain);
+    let second = world.spawn(second).id();
+    if is_hdr {
+        world.entity_mut(second).insert(Hdr);
+    }
+    style.apply(&mut world.commands().entity(second));
+    world.flush();
+    second
+}
+
+/// The pixels of `a` that differ from `b`.
+fn different(a: &image::RgbaImage, b: &image::RgbaImage) -> HashSet<(u32, u32)> {
+    let pixels = a.enumerate_pixels().zip(b.pixels());
+    pixels
+        .filter(|((.., a), b)| a != b)
+        .map(|((x, y, _), _)| (x, y))
+        .collect()
+}
+
+/// Whether a pixel is at most this far from one of these, along both axes.
+fn is_near(pixels: &HashSet<(u32, u32)>, (x, y): (u32, u32), reach: u32) -> bool {
+    let near = |at: u32| at.saturating_sub(reach)..=at + reach;
+    near(x).any(|x| near(y).any(|y| pixels.contains(&(x, y))))
+}
+
+/// A camera without a background of its own, over the picture of the first one.
+fn over_the_first() -> Camera {
+    Camera {
+        order: 1,
+        clear_color: ClearColorConfig::None,
+        ..default()
+    }
+}
+
+/// A styled view model changes only its own pixels and those of its lines: with a camera that clears to
+/// transparent, and with one that shares the picture and has a mask.
+#[test]
+fn a_second_camera_changes_only_what_it_draws() {
+    let gun = ComicStyle::new()
+        .with(Desaturation {
+            amount: 1.0,
+            ..default()
+        })
+        .with(ToneBands::default())
+        .with(Outlines::default());
+    for (msaa, hdr) in [
+        (Msaa::Off, false),
+        (Msaa::Sample4, false),
+        (Msaa::Off, true),
+    ] {
+        let mut small = Small::new(UVec2::new(192, 128), msaa);
+        if hdr {
+            small.insert(Hdr);
+        }
+        small.style(&comic());
+        small.settle();
+        let alone = small.picture();
+        cube(&mut small, Color::srgb(0.2, 0.7, 0.3));
+        for (settings, masks) in [
+            (overlay_camera(1), true),
+            (over_the_first(), true),
+            (over_the_first(), false),
+        ] {
+            let mut drawn = |style: &ComicStyle, mask: StyleMask| {
+                let camera = second(&mut small, (settings.clone(), mask), style);
+                small.settle();
+                let picture = small.picture();
+                small.world().despawn(camera);
+                picture
+            };
+            let shape = different(&drawn(&ComicStyle::new(), StyleMask::Auto), &alone);
+            assert!((1000..6000).contains(&shape.len()), "{}", shape.len());
+            let mask = if masks {
+                StyleMask::Auto
+            } else {
+                StyleMask::Picture
+            };
+            let changed = different(&drawn(&gun, mask), &alone);
+            assert!(changed.len() > shape.len());
+            // A line of 2 px lies on the border, and its smoothed rim reaches a pixel farther.
+            let strayed = changed
+                .iter()
+                .filter(|at| !is_near(&shape, **at, 3))
+                .count();
+            assert_eq!(
+                strayed == 0,
+                masks,
+                "{msaa:?}, {hdr}, {settings:?}: {strayed}"
+            );
+            if !masks {
+                // Without a mask, nearly all is changed once more.
+                assert!(strayed > 10_000, "{strayed}");
+            }
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The geometry of the first camera hides that of the second; its lines are not drawn again.
+#[test]
+fn ids_tell_what_a_camera_that_loads_depth_has_drawn() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
+    small.style(&comic());
+    small.settle();
+    let alone = small.picture();
+    // Half behind the red cube.
+    let marker = small.put(
+        Cuboid::default(),
+        unlit(Color::srgb(0.2, 0.7, 0.3)),
+        Transform::from_xyz(-0.9, 0.9, 0.0),
+    );
+    small.world().entity_mut(marker).insert(own_layer());
+    let load = Camera3d {
+        depth_load_op: Camera3dDepthLoadOp::Load,
+        ..default()
+    };
+    let mut drawn = |style: &ComicStyle| {
+        let camera = second(&mut small, over_the_first(), style);
+        small.world().entity_mut(camera).insert(load.clone());
+        small.settle();
+        let picture = small.picture();
+        small.world().despawn(camera);
+        picture
+    };
+    let shape = different(&drawn(&ComicStyle::new()), &alone);
+    assert!((300..3000).contains(&shape.len()), "{}", shape.len());
+    let style = ComicStyle::new()
+        .with(Desaturation::default())
+        .with(Outlines::default());
+    let changed = different(&drawn(&style), &alone);
+    let strayed = changed
+        .iter()
+        .filter(|at| !is_near(&shape, **at, 4))
+        .count();
+    assert_eq!(strayed, 0);
+    assert!(changed.len() > shape.len());
+    assert_eq!(small.errors(), 0);
+}
+
+/// A picture of half the opacity is half of the opaque one after every colour effect, whose arithmetic is
+/// not linear.
+#[test]
+fn colour_effects_change_what_is_seen_of_a_surface() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.clear();
+    small.insert(overlay_camera(0));
+    let faithful = Desaturation {
+        equations: Equations::Faithful,
+        amount: 1.0,
+        ..default()
+    };
+    let sepia = Colorization {
+        amount: 1.0,
+        ..Colorization::SEPIA
+    };
+    for style in [
+        ComicStyle::new().with(sepia),
+        ComicStyle::new().with(ToneBands::default()),
+        ComicStyle::new().with(ToneRamp::default()),
+        ComicStyle::new().with(faithful),
+        ComicStyle::new().with(TwoTone::default()),
+    ] {
+        // An unlit sheet over nothing.
+        let mut color = |alpha: f32| {
+            let color = LinearRgba::new(0.3, 0.2, 0.05, alpha);
+            let material = StandardMaterial {
+                alpha_mode: AlphaMode::Blend,
+                ..unlit(color.into())
+            };
+            let sheet = Plane3d::default().mesh().size(40.0, 40.0);
+            let sheet = small.put(sheet, material, Transform::IDENTITY);
+            small.style(&style);
+            small.settle();
+            let (before, after) = small.pass();
+            small.world().despawn(sheet);
+            let middle = before.pixels.len() / 2 + 48;
+            let rgb = |picture: &FloatImage| Vec3::from_slice(&picture.pixels[middle][..3]);
+            let (before, after) = (rgb(&before), rgb(&after));
+            let expected = color.to_vec3() * alpha;
+            assert!(before.distance(expected) < 0.01, "{before}, {expected}");
+            after
+        };
+        let (opaque, half) = (color(1.0), color(0.5));
+        // The target has eight bits, in sRGB: a code is up to 0.9 % of linear light.
+        let name = &style;
+        assert!(
+            (0.5 * opaque).distance(half) < 0.01,
+            "{name:?}: {opaque}, {half}"
+        );
+    }
+}
+
+/// A material that is not in the prepass.
+#[derive(Asset, TypePath, AsBindGroup, Clone)]
+struct Bare {}
+
+impl Material for Bare {
+    fn enable_prepass() -> bool {
+        false
+    }
+}
+
+/// The picture of the small scene with a cube that is not in the prepass, before an edge.
+fn with_bare_cube(
+    small: &mut Small,
+    beyond: BeyondPrepass,
+    style: &ComicStyle,
+) -> image::RgbaImage {
+    small.insert(beyond);
+    small.style(style);
+    small.settle();
+    small.picture()
+}
+
+/// Where the picture shows what is not in the prepass, `NoLines` draws no lines of what is behind it,
+/// and `Plain` changes nothing.
+#[test]
+fn what_is_not_in_the_prepass_keeps_its_colours() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let plugin = MaterialPlugin::<Bare>::default();
+        let mut small = Small::with_plugins(options(UVec2::new(192, 128)), msaa, plugin);
+        let empty = ComicStyle::new();
+        let before = with_bare_cube(&mut small, BeyondPrepass::Styled, &empty);
+        let material = small.world().resource_mut::<Assets<Bare>>().add(Bare {});
+        let at = Transform::from_xyz(0.6, 0.9, 2.4);
+        small.put_shared(Cuboid::default(), MeshMaterial3d(material), at);
+        let plain = with_bare_cube(&mut small, BeyondPrepass::Styled, &empty);
+        let shape = different(&plain, &before);
+        assert!((1000..6000).contains(&shape.len()), "{}", shape.len());
+        // Not the rim, whose pixels show both.
+        let is_whole = |(x, y): (u32, u32)| {
+            let near = |at: u32| at - 1..=at + 1;
+            near(x).all(|x| near(y).all(|y| shape.contains(&(x, y))))
+        };
+        let whole: Vec<_> = shape.iter().filter(|at| is_whole(**at)).collect();
+        let lines = ComicStyle::new().with(Outlines::default());
+        let mut changed = |beyond: BeyondPrepass, style: &ComicStyle| {
+            let drawn = with_bare_cube(&mut small, beyond, style);
+            let changed = different(&drawn, &plain);
+            whole.iter().filter(|at| changed.contains(**at)).count()
+        };
+        assert!(changed(BeyondPrepass::Styled, &lines) > 100, "{msaa:?}");
+        assert_eq!(changed(BeyondPrepass::NoLines, &lines), 0, "{msaa:?}");
+        assert!(changed(BeyondPrepass::NoLines, &comic()) > whole.len() / 2);
+        assert_eq!(changed(BeyondPrepass::Plain, &comic()), 0, "{msaa:?}");
+        // Elsewhere there are lines.
+        let drawn = with_bare_cube(&mut small, BeyondPrepass::NoLines, &lines);
+        assert!(different(&drawn, &plain).len() > 500);
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// An overlay draws its layers over the comic without effects, hidden by the geometry of its camera; it
+/// follows the camera, and goes with the component.
+#[test]
+fn an_overlay_is_drawn_over_the_comic() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Sample4);
+    small.style(&comic());
+    small.settle();
+    let alone = small.picture();
+    let green = Color::srgb(0.2, 0.7, 0.3);
+    let marker = cube(&mut small, green);
+    small.insert(ComicOverlay::default());
+    small.settle();
+    let shown = different(&small.picture(), &alone);
+    let [r, g, b, _] = green.to_srgba().to_u8_array();
+    let picture = small.picture();
+    let is_exact = |(x, y): &&(u32, u32)| {
+        let found = picture.get_pixel(*x, *y).0;
+        (0..3).all(|c| found[c].abs_diff([r, g, b][c]) <= 1)
+    };
+    let exact = shown.iter().filter(is_exact).count();
+    assert!(exact * 10 > shown.len() * 9, "{exact} of {}", shown.len());
+    // Below the ground, it is hidden.
+    let below = Transform::from_xyz(0.0, -2.0, 1.0);
+    small.world().entity_mut(marker).insert(below);
+    small.settle();
+    assert!(different(&small.picture(), &alone).is_empty());
+    // The camera turns, and sees the marker through its overlay.
+    small
+        .world()
+        .entity_mut(marker)
+        .insert(Transform::from_xyz(9.0, 1.0, 0.0));
+    let ahead = Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(9.0, 1.0, 0.0), Vec3::Y);
+    small.insert(ahead);
+    small.settle();
+    let middle = small.picture().get_pixel(96, 64).0;
+    assert!((0..3).all(|c| middle[c].abs_diff([r, g, b][c]) <= 1));
+    small.camera_mut().remove::<ComicOverlay>();
+    small.settle();
+    let world = small.world();
+    assert_eq!(world.query::<&Camera>().iter(world).count(), 1);
+    assert_eq!(small.errors(), 0);
+}
+
+/// A mirrored view is the picture of the view that it mirrors.
+#[test]
+fn a_mirrored_view_is_the_mirrored_picture() {
+    let size = UVec2::new(192, 128);
+    let mut small = Small::new(size, Msaa::Off);
+    // Strokes and screens would begin at another corner.
+    let style = ComicStyle::new()
+        .with(ToneBands::default())
+        .with(Outlines::default());
+    small.style(&style);
+    small.settle();
+    let mut expected = small.picture();
+    image::imageops::flip_horizontal_in_place(&mut expected);
+    let camera = small.camera;
+    let projection = small.world().get::<Projection>(camera).cloned();
+    let Some(Projection::Perspective(projection)) = projection else {
+        panic!("a perspective");
+    };
+    let mirrored = Reshaped {
+        projection,
+        plane: Vec4::ZERO,
+        matrix: |projection, _| {
+            Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * projection.get_clip_from_view()
+        },
+    };
+    let settings = Camera {
+        invert_culling: true,
+        clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
+        ..default()
+    };
+    small.insert((Projection::custom(mirrored), settings));
+    small.settle();
+    small.settle();
+    let found = small.picture();
+    let pixels = found.pixels().zip(expected.pixels());
+    let is_other =
+        |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 2);
+    let others = pixels.filter(is_other).count();
+    // Silhouettes cover other pixels where a border passes through the centre of one.
+    assert!(others < (size.x * size.y / 500) as usize, "{others}");
+    assert_eq!(small.errors(), 0);
+}

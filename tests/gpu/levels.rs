@@ -1,0 +1,89 @@
+//! Levels of detail that fade into each other.
+
+use bevy::camera::visibility::VisibilityRange;
+
+use crate::prelude::*;
+
+/// Two spheres of other detail at one place, of which the near one fades into the far one between 8 and 12 units, and
+/// the camera at this distance.
+fn show(small: &mut Small, distance: f32) {
+    small.clear();
+    let margin = 8.0..12.0;
+    let levels = [(0.0..0.0, margin.clone(), 5), (margin, 50.0..50.0, 3)];
+    for (start_margin, end_margin, detail) in levels {
+        let mesh = Sphere::new(1.0).mesh().ico(4 * detail).expect("a sphere");
+        let sphere = small.put(mesh, unlit(Color::srgb(0.9, 0.5, 0.2)), Transform::IDENTITY);
+        small.world().entity_mut(sphere).insert(VisibilityRange {
+            start_margin,
+            end_margin,
+            use_aabb: false,
+        });
+    }
+    small.insert(Transform::from_xyz(0.0, 0.0, distance).looking_at(Vec3::ZERO, Vec3::Y));
+    small.settle();
+    small.settle();
+}
+
+/// Ink, of the length of the sphere's outline, and the pixels of ink well inside of it.
+fn ink(small: &mut Small, distance: f32) -> (f32, usize) {
+    show(small, distance);
+    let picture = small.picture();
+    let size = UVec2::new(picture.width(), picture.height()).as_vec2();
+    // The field of view of 45 degrees of the default.
+    let radius =
+        size.y / 2.0 / std::f32::consts::FRAC_PI_8.tan() / (distance * distance - 1.0).sqrt();
+    let dark = picture
+        .enumerate_pixels()
+        .filter(|(.., pixel)| pixel.0[0] < 60);
+    let (mut count, mut inside) = (0, 0);
+    for (x, y, _) in dark {
+        let from_centre = (Vec2::new(x as f32, y as f32) + 0.5 - 0.5 * size).length();
+        count += 1;
+        inside += usize::from(from_centre < 0.8 * radius);
+    }
+    (count as f32 / radius, inside)
+}
+
+/// While they fade, the outline is that of one sphere, with nothing inside; a picture without lines has no hole.
+#[test]
+fn levels_keep_their_outline_while_they_fade() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(384, 256), msaa);
+        small.style(&ComicStyle::new().with(Outlines::default()));
+        let whole: Vec<_> = [4.5, 16.0].map(|at| ink(&mut small, at)).to_vec();
+        let expected = (whole[0].0 + whole[1].0) / 2.0;
+        let (found, inside) = ink(&mut small, 10.0);
+        assert!(expected > 5.0, "{expected}");
+        assert!(
+            (0.8..1.25).contains(&(found / expected)),
+            "{msaa:?}: {found}, {expected}"
+        );
+        assert_eq!(inside, 0, "{msaa:?}");
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// An effect that reads depth alone: without normals, the engine's prepass does not fade, and the main pass would leave
+/// holes.
+#[test]
+fn there_are_no_holes_with_depth_alone() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
+    let background = Color::srgb(0.1, 0.2, 0.9);
+    small.insert(Camera {
+        clear_color: background.into(),
+        ..default()
+    });
+    small.style(&ComicStyle::new().with(Desaturation {
+        amount: 0.01,
+        ..default()
+    }));
+    show(&mut small, 10.0);
+    let picture = small.picture();
+    let blue = |x, y| {
+        let [r, _, b, _] = picture.get_pixel(x, y).0;
+        b > r
+    };
+    let holes = (90..102).flat_map(|x| (58..70).map(move |y| (x, y)));
+    assert_eq!(holes.filter(|(x, y)| blue(*x, *y)).count(), 0);
+    assert!(blue(4, 4));
+}
