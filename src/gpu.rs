@@ -88,3 +88,20 @@ pub(crate) fn definitions<const N: usize>(
     let set = flags.into_iter().filter(|(on, _)| *on);
     set.map(|(_, name)| name.into())
 }
+
+/// Whether something with this room is used again where less is needed: not if it is over four
+/// times too large, as after a window has become smaller.
+pub(crate) fn is_reused(room: u64, needed: u64) -> bool {
+    (needed..=needed.saturating_mul(4)).contains(&room)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn room_is_used_again_up_to_four_times_what_is_needed() {
+        let reused = [99, 100, 400, 401].map(|room| is_reused(room, 100));
+        assert_eq!(reused, [false, true, true, false]);
+    }
+}
