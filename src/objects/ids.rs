@@ -40,7 +40,7 @@ use super::{
     marks::Marks,
     object_ids::ObjectIds,
     phase::{Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
-    sections::{SectionBuffer, SectionTables},
+    sections::SectionStarts,
     transparent::TransparentItems,
 };
 use crate::gpu::texture;
@@ -264,17 +264,16 @@ pub(super) struct Records<'w> {
     groups: Res<'w, ObjectGroups>,
     marks: Res<'w, Marks>,
     writes: Res<'w, DepthWrites>,
-    sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
+    sections: Res<'w, SectionStarts>,
 }
 
 impl Records<'_> {
-    /// Id, style slot, first word of the sections and bits of the least alpha of a mesh.
+    /// Id, style slot, start of the sections and bits of the least alpha of a mesh.
     fn of(&mut self, mesh: Entity) -> [u32; 4] {
-        let slot = self.styles.slots.get(&mesh).copied().unwrap_or(0);
+        let slot = self.styles.slots.get(mesh).copied().unwrap_or(0);
         let id = self.ids.give(self.groups.object(mesh));
-        let (buffer, tables) = &self.sections;
-        let start = buffer.start(tables, mesh).unwrap_or(0);
-        let cutoff = self.writes.cutoffs.get(&mesh);
+        let start = self.sections.get(mesh).unwrap_or(0);
+        let cutoff = self.writes.cutoffs.get(mesh);
         [
             u32::from(id),
             u32::from(slot),

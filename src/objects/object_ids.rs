@@ -68,6 +68,12 @@ impl ObjectIds {
         self.ids.get(&object).copied()
     }
 
+    /// The id of an object, if it has it to itself.
+    pub(super) fn alone(&self, object: Entity) -> Option<u16> {
+        let id = self.get(object)?;
+        Some(id).filter(|id| !self.slots[usize::from(*id) - 1].shared)
+    }
+
     /// The largest id that was given so far.
     pub(super) fn last(&self) -> usize {
         self.slots.len()

@@ -12,23 +12,23 @@ use bevy::{
 };
 
 use super::{
-    changes::{self, NoteChanges},
+    changes::{self, NoteChanges, follow},
     depth_test::{self, count_ids},
     depths,
     draw::draw_object_ids,
-    groups::{ObjectGroups, extract_object_groups},
+    groups::ObjectGroups,
     ids::{prepare_object_ids, queue_object_ids},
     instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
     layer::prepare_layers,
     lightmaps::{Lightmapped, extract_lightmapped},
-    line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
-    marks::{Marks, extract_marks},
+    line_widths::{WideMeshes, WidthViews, prepare_line_widths},
+    marks::Marks,
     object_ids::{ObjectIds, begin_frame},
     phase::{ObjectIdItem, ObjectIdPhases},
     pipeline::{MarkSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
-    sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
-    table::extract_object_styles,
+    sections::{SectionBuffer, SectionStarts, extract_sections, prepare_sections},
+    table::ObjectStyles,
     update_mark_styles,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
@@ -43,7 +43,7 @@ pub(crate) fn build(app: &mut App) {
         .init_gpu_resource::<SpecializedMeshPipelines<MarkSpecializer>>()
         .init_resource::<Marks>()
         .init_gpu_resource::<SectionBuffer>()
-        .init_resource::<SectionTables>()
+        .init_resource::<SectionStarts>()
         .init_gpu_resource::<ObjectIdPhases>()
         .init_gpu_resource::<ObjectIds>()
         .init_resource::<ObjectGroups>()
@@ -69,11 +69,11 @@ fn add_systems(render_app: &mut SubApp) {
             ExtractSchedule,
             (
                 begin_frame,
-                extract_object_styles,
-                extract_object_groups,
+                follow::<ObjectStyles>,
+                follow::<ObjectGroups>,
+                follow::<Marks>,
+                follow::<WideMeshes>,
                 extract_sections,
-                extract_marks,
-                extract_wide_meshes,
                 extract_lightmapped,
             )
                 .in_set(NoteChanges),

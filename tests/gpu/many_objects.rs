@@ -8,7 +8,7 @@ use bevy::{
         batching::NoAutomaticBatching, occlusion_culling::OcclusionCulling, view::NoIndirectDrawing,
     },
 };
-use bevy_comics::testing::ObjectWork;
+use bevy_comics::{objects::ObjectSimplification, testing::ObjectWork};
 
 use crate::prelude::*;
 
@@ -206,4 +206,38 @@ fn a_frame_does_what_has_changed() {
         before.queued + 2,
         "the cubes that changed"
     );
+}
+
+/// What is uploaded for objects is what has changed of them.
+#[test]
+fn a_frame_uploads_what_has_changed() {
+    let mut small = Small::new(UVec2::splat(SIDE), Msaa::Off);
+    small.clear();
+    let cubes = put_cubes(&mut small, 200, |_, _| {});
+    let at = Transform::from_xyz(0.0, 0.0, 60.0);
+    small.insert((at, Outlines::default(), Abstraction::default()));
+    small.on(cubes[0].entity).insert(NoOutlines::default());
+    small.settle();
+    small.headless.step(3);
+    let mut before = work(&small);
+    let mut step = |small: &mut Small, case: &str, bytes: usize| {
+        small.headless.step(1);
+        let now = work(small);
+        assert_eq!(now.uploaded - before.uploaded, bytes, "{case}");
+        before = now;
+    };
+    step(&mut small, "nothing changed", 0);
+    // The record of an instance has four words, a box has twelve.
+    small.on(cubes[9].entity).insert(NoOutlines::default());
+    step(&mut small, "one has another style", 16);
+    small
+        .on(cubes[9].entity)
+        .insert(Transform::from_xyz(0.0, 9.0, 9.0));
+    step(&mut small, "one moved", 48);
+    small
+        .on(cubes[9].entity)
+        .insert(ObjectSimplification::fixed(0.5));
+    step(&mut small, "one is simplified", 48);
+    small.on(cubes[9].entity).insert(OutlineGroup);
+    step(&mut small, "one is a group of its own", 0);
 }
