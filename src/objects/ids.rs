@@ -19,7 +19,7 @@ use bevy::{
         camera::DirtySpecializations,
         render_resource::TextureUsages,
         renderer::RenderDevice,
-        sync_world::MainEntity,
+        sync_world::{MainEntity, MainEntityHashSet},
         texture::TextureCache,
         view::{
             ExtractedView, Msaa, RenderVisibleEntities, RenderVisibleEntitiesClass,
@@ -36,6 +36,7 @@ use super::{
     groups::ObjectGroups,
     items::{Drawn, IdItems, Missing},
     layer::LayerRequest,
+    levels::Levels,
     line_widths::WidthViews,
     marks::Marks,
     object_ids::ObjectIds,
@@ -103,7 +104,11 @@ type Items<'w> = (
 );
 
 /// What has changed since the last frame.
-type Changes<'w> = (Res<'w, DirtySpecializations>, Res<'w, ChangedObjects>);
+type Changes<'w, 's> = (
+    Res<'w, DirtySpecializations>,
+    Res<'w, ChangedObjects>,
+    Levels<'w, 's>,
+);
 
 pub(super) fn queue_object_ids(
     mut commands: Commands,
@@ -155,7 +160,8 @@ pub(super) fn queue_object_ids(
             records: &mut records,
             key,
         };
-        queue.update((view.retained_view_entity, class), &changes);
+        let out = changes.2.out_of_range(entity, view);
+        queue.update((view.retained_view_entity, class), &changes, out);
         if test.compiles_ahead() {
             phase.note_ahead(&test, &items);
         }
@@ -192,8 +198,13 @@ impl Queue<'_, '_> {
     fn update(
         &mut self,
         (view, class): (RetainedViewEntity, &RenderVisibleEntitiesClass),
-        (dirty, changed): &Changes,
+        (dirty, changed, _): &Changes,
+        out_of_range: MainEntityHashSet,
     ) {
+        let before = std::mem::replace(&mut self.phase.out_of_range, out_of_range);
+        let crossed: Vec<_> = (before.symmetric_difference(&self.phase.out_of_range))
+            .copied()
+            .collect();
         let outdated = dirty.must_wipe_specializations_for_view(view);
         if self.phase.begin(self.key, outdated, &mut self.records.ids) {
             for (_, mesh) in class.iter_visible() {
@@ -201,14 +212,17 @@ impl Queue<'_, '_> {
             }
         } else {
             let pending = std::mem::take(&mut self.phase.pending);
-            for mesh in dirty.iter_to_dequeue(view, class).chain(&changed.0) {
+            let others = changed.0.iter().chain(&crossed);
+            for mesh in dirty.iter_to_dequeue(view, class).chain(others.clone()) {
                 self.phase.remove(*mesh, &mut self.records.ids);
             }
             for (_, mesh) in dirty.iter_to_queue(view, class, &HashSet::default()) {
                 self.add(*mesh);
             }
-            let others = changed.0.iter().chain(&pending);
-            for mesh in others.filter(|mesh| is_visible(class, **mesh)) {
+            for mesh in others
+                .chain(&pending)
+                .filter(|mesh| is_visible(class, **mesh))
+            {
                 self.add(*mesh);
             }
         }
@@ -217,7 +231,7 @@ impl Queue<'_, '_> {
 
     /// Adds a visible mesh, if it is not there.
     fn add(&mut self, mesh: MainEntity) {
-        if self.phase.contains(mesh) {
+        if self.phase.contains(mesh) || self.phase.out_of_range.contains(&mesh) {
             return;
         }
         let drawn = Drawn::Ids {

@@ -25,6 +25,8 @@ mod items;
 #[cfg(feature = "objects")]
 mod layer;
 #[cfg(feature = "objects")]
+mod levels;
+#[cfg(feature = "objects")]
 mod lightmaps;
 #[cfg(feature = "objects")]
 mod line_widths;

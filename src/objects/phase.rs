@@ -160,6 +160,8 @@ pub(crate) struct ObjectIdPhase {
     places: MainEntityHashMap<[Option<u32>; 2]>,
     /// Meshes whose assets have not loaded.
     pub pending: MainEntityHashSet,
+    /// Meshes that the GPU leaves out.
+    pub out_of_range: MainEntityHashSet,
     /// Whether draw calls and buffers have yet to follow the bins.
     pub changed: bool,
     /// The draw calls of this frame.

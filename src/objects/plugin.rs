@@ -21,6 +21,7 @@ use super::{
     instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
     layer::prepare_layers,
+    levels::{RangedMeshes, extract_ranged_meshes},
     lightmaps::{Lightmapped, extract_lightmapped},
     line_widths::{WideMeshes, WidthViews, prepare_line_widths},
     marks::Marks,
@@ -48,6 +49,7 @@ pub(crate) fn build(app: &mut App) {
         .init_gpu_resource::<ObjectIds>()
         .init_resource::<ObjectGroups>()
         .init_resource::<WideMeshes>()
+        .init_resource::<RangedMeshes>()
         .init_resource::<Lightmapped>()
         .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
@@ -75,6 +77,7 @@ fn add_systems(render_app: &mut SubApp) {
                 follow::<WideMeshes>,
                 extract_sections,
                 extract_lightmapped,
+                extract_ranged_meshes,
             )
                 .in_set(NoteChanges),
         )
