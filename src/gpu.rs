@@ -1,5 +1,10 @@
-//! Short forms of what the renderer takes as structs.
+//! Short forms of what the renderer takes as structs, and buffers that follow what changes.
 
+#[cfg(feature = "objects")]
+use std::ops::Range;
+
+#[cfg(feature = "objects")]
+use bevy::render::{render_resource::RawBufferVec, renderer::RenderQueue};
 use bevy::{
     image::ToExtents,
     math::UVec2,
@@ -87,4 +92,136 @@ pub(crate) fn definitions<const N: usize>(
 ) -> impl Iterator<Item = ShaderDefVal> {
     let set = flags.into_iter().filter(|(on, _)| *on);
     set.map(|(_, name)| name.into())
+}
+
+/// Whether something with this room is used again where less is needed: not if it is over four
+/// times too large, as after a window has become smaller.
+pub(crate) fn is_reused(room: u64, needed: u64) -> bool {
+    (needed..=needed.saturating_mul(4)).contains(&room)
+}
+
+/// A storage buffer whose entries have `N` words. Only entries that changed are uploaded.
+#[cfg(feature = "objects")]
+pub(crate) struct Table<const N: usize> {
+    entries: RawBufferVec<[u32; N]>,
+    /// What has yet to be uploaded.
+    changed: Vec<Range<usize>>,
+    /// Bytes that were uploaded so far.
+    pub written: usize,
+}
+
+/// Entries that are uploaded although they have not changed, so that there are fewer uploads.
+#[cfg(feature = "objects")]
+const GAP: usize = 64;
+
+#[cfg(feature = "objects")]
+impl<const N: usize> Default for Table<N> {
+    fn default() -> Self {
+        Self {
+            entries: RawBufferVec::new(BufferUsages::STORAGE),
+            changed: Vec::new(),
+            written: 0,
+        }
+    }
+}
+
+#[cfg(feature = "objects")]
+impl<const N: usize> Table<N> {
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    pub fn buffer(&self) -> Option<&Buffer> {
+        self.entries.buffer()
+    }
+
+    pub fn truncate(&mut self, len: usize) {
+        self.entries.truncate(len);
+    }
+
+    /// Sets an entry, or adds it at the end.
+    pub fn set(&mut self, at: usize, entry: [u32; N]) {
+        let entries = self.entries.values_mut();
+        match entries.get_mut(at) {
+            Some(known) if *known == entry => return,
+            Some(known) => *known = entry,
+            None => entries.push(entry),
+        }
+        match self.changed.last_mut() {
+            Some(last) if (last.start..=last.end + GAP).contains(&at) => {
+                last.end = last.end.max(at + 1);
+            }
+            _ => self.changed.push(at..at + 1),
+        }
+    }
+
+    /// Uploads what has changed.
+    pub fn write(&mut self, device: &RenderDevice, queue: &RenderQueue) {
+        let len = self.len();
+        let [room, needed] = [self.entries.capacity(), len.max(GAP)].map(|count| count as u64);
+        let changed = std::mem::take(&mut self.changed);
+        let mut uploaded = 0;
+        if self.buffer().is_none() || !is_reused(room, needed) {
+            let mut larger = RawBufferVec::new(BufferUsages::STORAGE);
+            std::mem::swap(larger.values_mut(), self.entries.values_mut());
+            larger.reserve((len + len / 4).max(GAP), device);
+            larger.write_buffer(device, queue);
+            self.entries = larger;
+            uploaded = len;
+        } else {
+            for range in merged(changed) {
+                let range = range.start..range.end.min(len);
+                // It fits, and the buffer is there.
+                if !range.is_empty()
+                    && self
+                        .entries
+                        .write_buffer_range(queue, range.clone())
+                        .is_ok()
+                {
+                    uploaded += range.len();
+                }
+            }
+        }
+        self.written += uploaded * size_of::<[u32; N]>();
+    }
+}
+
+/// The ranges in order, those together that are close.
+#[cfg(feature = "objects")]
+fn merged(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    ranges.sort_unstable_by_key(|range| range.start);
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for range in ranges {
+        match all.last_mut() {
+            Some(last) if range.start <= last.end + GAP => last.end = last.end.max(range.end),
+            _ => all.push(range),
+        }
+    }
+    all
+}
+
+#[cfg(all(test, feature = "objects"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_that_changed_are_uploaded_in_few_ranges() {
+        let mut table = Table::<1>::default();
+        for at in 0..1000 {
+            table.set(at, [0]);
+        }
+        assert_eq!(table.changed, [0..1000]);
+        table.changed.clear();
+        for at in [900, 3, 500, 4, 530, 0] {
+            table.set(at, [1]);
+            table.set(at, [1]);
+        }
+        assert_eq!(merged(table.changed), [0..5, 500..531, 900..901]);
+    }
+
+    #[test]
+    fn room_is_used_again_up_to_four_times_what_is_needed() {
+        let reused = [99, 100, 400, 401].map(|room| is_reused(room, 100));
+        assert_eq!(reused, [false, true, true, false]);
+    }
 }

@@ -3,17 +3,15 @@
 use bevy::{
     ecs::{
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
+        query::{Changed, Or, With},
         reflect::ReflectComponent,
-        system::Query,
     },
     math::{Vec3, Vec4},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::GlobalTransform,
 };
 
-use super::{inherit::inherit, table::ObjectStyleUniform};
+use super::{inherit::Heritage, table::ObjectStyleUniform};
 
 /// The screens of a [`Halftone`](crate::Halftone) with
 /// [`ScreenAnchor::Object`](crate::effects::ScreenAnchor::Object) follow this object: the dots move, turn
@@ -56,7 +54,7 @@ pub(super) struct Anchor {
 
 impl Anchor {
     /// `None` for an object without an extent, or not at a finite place.
-    fn new(screen: &PatternAnchor, at: &GlobalTransform) -> Option<Self> {
+    pub fn new(screen: &PatternAnchor, at: &GlobalTransform) -> Option<Self> {
         let offset = Some(screen.center).filter(|centre| centre.is_finite());
         let centre = at.transform_point(offset.unwrap_or_default());
         let (scale, rotation, _) = at.to_scale_rotation_translation();
@@ -77,17 +75,17 @@ impl Anchor {
     }
 }
 
-/// The objects that screens follow.
-pub(super) fn anchors(
-    anchored: &Query<(Entity, &PatternAnchor, &GlobalTransform)>,
-    children: &Query<&Children>,
-) -> EntityHashMap<Anchor> {
-    let mut found = EntityHashMap::default();
-    for (entity, screen, at) in anchored {
-        if let Some(anchor) = Anchor::new(screen, at) {
-            let own = |child| anchored.contains(child);
-            inherit(&mut found, (entity, anchor), screen.inherit, children, own);
-        }
+/// The component and where its object is.
+pub(crate) struct Anchored;
+
+impl Heritage for Anchored {
+    type Own = (&'static PatternAnchor, &'static GlobalTransform);
+    type Changed = (
+        With<PatternAnchor>,
+        Or<(Changed<PatternAnchor>, Changed<GlobalTransform>)>,
+    );
+
+    fn passes_on((screen, _): &(&PatternAnchor, &GlobalTransform)) -> bool {
+        screen.inherit
     }
-    found
 }

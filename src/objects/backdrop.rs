@@ -5,10 +5,9 @@ use bevy::{
     camera::primitives::Aabb,
     core_pipeline::prepass::{AlphaMask3dPrepass, Opaque3dPrepass},
     ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
+        change_detection::DetectChangesMut,
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
+        entity::Entity,
         query::With,
         reflect::ReflectComponent,
         resource::Resource,
@@ -22,8 +21,9 @@ use bevy::{
 };
 
 use super::{
-    changes::ChangedObjects,
-    inherit::{Inherited, inherit},
+    changes::Follow,
+    inherit::{Inherit, Inherited, watch},
+    shared::Shared,
 };
 
 /// Leaves this mesh out of the depth prepass, so that effects treat its pixels as sky: for sky domes, clouds and
@@ -47,48 +47,45 @@ impl Default for Backdrop {
     }
 }
 
+impl Inherit for Backdrop {
+    fn is_inherited(&self) -> bool {
+        self.inherit
+    }
+}
+
 /// The meshes of backdrops. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
-pub(crate) struct Backdrops(EntityHashMap<()>);
+#[derive(Resource, Default)]
+pub(crate) struct Backdrops(Shared<()>);
 
 impl Backdrops {
     pub fn contains(&self, mesh: Entity) -> bool {
-        self.0.contains_key(&mesh)
+        self.0.get(mesh).is_some()
+    }
+}
+
+impl Follow for Backdrops {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.0.follow(&main.0, changed);
     }
 }
 
 fn find_backdrops(
-    marked: Query<(Entity, &Backdrop)>,
-    children: Query<&Children>,
+    mut marked: Inherited<Backdrop>,
     mut meshes: Query<&mut Mesh3d>,
     mut backdrops: ResMut<Backdrops>,
-    mut changes: Inherited<Backdrop>,
 ) {
-    if !changes.is_changed() || (marked.is_empty() && backdrops.0.is_empty()) {
-        return;
-    }
-    let mut found = EntityHashMap::default();
-    for (entity, backdrop) in &marked {
-        let own = |child| marked.contains(child);
-        inherit(&mut found, (entity, ()), backdrop.inherit, &children, own);
-    }
-    // The engine then puts them into the prepass again.
-    for gone in backdrops.0.keys().filter(|mesh| !found.contains_key(*mesh)) {
-        if let Ok(mut mesh) = meshes.get_mut(*gone) {
+    let changed = marked.update();
+    backdrops.0.begin();
+    for entity in changed {
+        let is_backdrop = marked.of(entity).is_some();
+        let was_other = backdrops.0.set(entity, is_backdrop.then_some(()));
+        // The engine then puts it into the prepass again.
+        if was_other
+            && !is_backdrop
+            && let Ok(mut mesh) = meshes.get_mut(entity)
+        {
             mesh.set_changed();
         }
-    }
-    backdrops.set_if_neq(Backdrops(found));
-}
-
-pub(super) fn extract_backdrops(
-    main: Extract<Res<Backdrops>>,
-    mut backdrops: ResMut<Backdrops>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        changed.note(&backdrops.0, &main.0);
-        backdrops.clone_from(&main);
     }
 }
 
@@ -101,7 +98,7 @@ pub(super) fn remove_backdrops(
     if backdrops.0.is_empty() {
         return;
     }
-    let meshes = || backdrops.0.keys().copied().map(MainEntity::from);
+    let meshes = || backdrops.0.keys().map(MainEntity::from);
     for phase in opaque.values_mut() {
         meshes().for_each(|mesh| phase.remove(mesh));
     }
@@ -121,8 +118,8 @@ pub(crate) fn nearest_backdrop(
     boxes: &BackdropBoxes,
     eye: Vec3,
 ) -> Option<f32> {
-    let distance = |mesh: &Entity| {
-        let (aabb, at) = boxes.get(*mesh).ok()?;
+    let distance = |mesh: Entity| {
+        let (aabb, at) = boxes.get(mesh).ok()?;
         let (scale, rotation, _) = at.to_scale_rotation_translation();
         let centre = at.transform_point(aabb.center.into());
         let half = aabb.half_extents * Vec3A::from(scale.abs());
@@ -139,6 +136,7 @@ pub(crate) fn nearest_backdrop(
 }
 
 pub(super) fn build(app: &mut App) {
+    watch::<Backdrop>(app);
     app.register_type::<Backdrop>()
         .init_resource::<Backdrops>()
         .add_systems(PostUpdate, find_backdrops);

@@ -4,12 +4,13 @@
 use bevy::{
     app::SubApp,
     ecs::{
-        entity::{Entity, EntityHashMap},
+        component::Mutable,
+        entity::Entity,
         lifecycle::RemovedComponents,
         query::{Changed, Or},
         resource::Resource,
         schedule::{IntoScheduleConfigs, SystemSet},
-        system::{Query, ResMut},
+        system::{Query, Res, ResMut},
     },
     mesh::skinning::SkinnedMesh,
     pbr::Lightmap,
@@ -24,16 +25,18 @@ use bevy::{
 #[derive(Resource, Default)]
 pub(crate) struct ChangedObjects(pub MainEntityHashSet);
 
-impl ChangedObjects {
-    /// Notes the keys whose values differ.
-    pub fn note<V: PartialEq>(&mut self, old: &EntityHashMap<V>, new: &EntityHashMap<V>) {
-        let changed = new
-            .iter()
-            .filter(|(mesh, value)| old.get(*mesh) != Some(value));
-        let gone = old.keys().filter(|mesh| !new.contains_key(*mesh));
-        let all = changed.map(|(mesh, _)| mesh).chain(gone);
-        self.0.extend(all.copied().map(MainEntity::from));
-    }
+/// A resource of the main world of which the render world has a copy.
+pub(super) trait Follow: Resource<Mutability = Mutable> {
+    /// Makes this a copy of `main`, and notes the meshes that differ.
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet);
+}
+
+pub(super) fn follow<R: Follow>(
+    main: Extract<Res<R>>,
+    mut copy: ResMut<R>,
+    mut changed: ResMut<ChangedObjects>,
+) {
+    copy.follow(&main, &mut changed.0);
 }
 
 /// A change of a component on which the draw call of a mesh depends.

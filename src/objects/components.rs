@@ -3,21 +3,17 @@
 use bevy::{
     color::Color,
     ecs::{
-        change_detection::DetectChangesMut,
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
-        query::{Changed, Or, With},
+        query::{AnyOf, Changed, Or},
         reflect::ReflectComponent,
-        system::{Query, ResMut, SystemParam},
+        system::ResMut,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::GlobalTransform,
 };
 
 use super::{
-    anchors::{PatternAnchor, anchors},
-    inherit::{Inherited, inherit},
+    anchors::{Anchor, Anchored},
+    inherit::{Heritage, Inherit, Inherited},
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
@@ -163,83 +159,69 @@ impl OutlineStyle {
     }
 }
 
-/// The components of objects that change how they are drawn.
-type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
-
-/// Whether the table of outline styles may have changed.
-#[derive(SystemParam)]
-pub(crate) struct StyleChanges<'w, 's> {
-    styles: Inherited<'w, 's, OutlineStyle>,
-    bare: Inherited<'w, 's, NoOutlines>,
-    unstyled: Inherited<'w, 's, NoStyle>,
-    anchors: Inherited<'w, 's, PatternAnchor>,
-    moved: Query<'w, 's, (), (With<PatternAnchor>, Changed<GlobalTransform>)>,
-}
-
-impl StyleChanges<'_, '_> {
-    fn any(&mut self) -> bool {
-        let changed = [
-            self.styles.is_changed(),
-            self.bare.is_changed(),
-            self.unstyled.is_changed(),
-            self.anchors.is_changed(),
-            !self.moved.is_empty(),
-        ];
-        changed.contains(&true)
+impl Inherit for NoStyle {
+    fn is_inherited(&self) -> bool {
+        self.inherit
     }
 }
 
-/// Builds the table of outline styles, and gives each object that has one its slot.
+/// Either component of outlines; `NoOutlines` counts if an entity has both.
+pub(crate) struct Outlined;
+
+type OutlineParts<'w> = (Option<&'w OutlineStyle>, Option<&'w NoOutlines>);
+
+impl Heritage for Outlined {
+    type Own = AnyOf<(&'static OutlineStyle, &'static NoOutlines)>;
+    type Changed = Or<(Changed<OutlineStyle>, Changed<NoOutlines>)>;
+
+    fn passes_on((style, none): &OutlineParts) -> bool {
+        match (style, none) {
+            (_, Some(none)) => none.inherit,
+            (style, None) => style.is_some_and(|style| style.inherit),
+        }
+    }
+}
+
+/// The outlines of an object with one of the components.
+fn outlines((style, none): OutlineParts) -> ObjectStyleUniform {
+    match (style, none) {
+        (Some(style), None) => style.uniform(),
+        _ => ObjectStyleUniform {
+            kinds: 0,
+            ..Default::default()
+        },
+    }
+}
+
+/// Gives the objects whose style has changed their places in the table.
 pub(crate) fn assign_object_styles(
-    outlined: Query<(Entity, Option<&OutlineStyle>, Option<&NoOutlines>), Drawn>,
-    unstyled: Query<(Entity, &NoStyle)>,
-    anchored: Query<(Entity, &PatternAnchor, &GlobalTransform)>,
-    children: Query<&Children>,
+    mut outlined: Inherited<Outlined>,
+    mut unstyled: Inherited<NoStyle>,
+    mut anchored: Inherited<Anchored>,
     mut styles: ResMut<ObjectStyles>,
-    mut changes: StyleChanges,
 ) {
-    let unused = outlined.is_empty() && unstyled.is_empty() && anchored.is_empty();
-    // All are asked, so that each forgets what was removed.
-    if !changes.any() || (unused && !styles.any()) {
+    let mut changed = outlined.update();
+    changed.extend(unstyled.update());
+    changed.extend(anchored.update());
+    if changed.is_empty() {
         return;
     }
-    let mut outlines: EntityHashMap<ObjectStyleUniform> = EntityHashMap::default();
-    for (entity, style, none) in &outlined {
-        let (uniform, inherited) = match (style, none) {
-            (_, Some(none)) => (
-                ObjectStyleUniform {
-                    kinds: 0,
-                    ..Default::default()
-                },
-                none.inherit,
-            ),
-            (Some(style), None) => (style.uniform(), style.inherit),
-            (None, None) => continue,
-        };
-        let own = |child| outlined.contains(child);
-        inherit(&mut outlines, (entity, uniform), inherited, &children, own);
-    }
-    let mut bare: EntityHashMap<()> = EntityHashMap::default();
-    for (entity, none) in &unstyled {
-        let own = |child| unstyled.contains(child);
-        inherit(&mut bare, (entity, ()), none.inherit, &children, own);
-    }
-    let mut table = ObjectStyles {
-        sections: styles.sections,
-        marks: styles.marks,
-        widths: styles.widths,
-        fades: styles.fades,
-        ..Default::default()
+    let style = |object| {
+        let own = outlined.of(object).map(|(_, parts)| outlines(parts));
+        let is_bare = unstyled.of(object).is_some();
+        let anchor = anchored.of(object);
+        let anchor = anchor.and_then(|(_, (screen, at))| Anchor::new(screen, at));
+        if own.is_none() && !is_bare && anchor.is_none() {
+            return None;
+        }
+        let mut style = own.unwrap_or_default();
+        if is_bare {
+            style.kinds |= UNSTYLED;
+        }
+        if let Some(anchor) = anchor {
+            anchor.put(&mut style);
+        }
+        Some(style)
     };
-    for entity in bare.keys() {
-        outlines.entry(*entity).or_default().kinds |= UNSTYLED;
-    }
-    for (entity, anchor) in anchors(&anchored, &children) {
-        anchor.put(outlines.entry(entity).or_default());
-    }
-    for (entity, uniform) in &outlines {
-        let slot = table.slot(*uniform);
-        table.slots.insert(*entity, slot);
-    }
-    styles.set_if_neq(table);
+    styles.assign(changed.into_iter().map(|object| (object, style(object))));
 }

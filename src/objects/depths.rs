@@ -10,7 +10,6 @@ use bevy::{
     ecs::{
         component::Component,
         entity::{Entity, EntityHashMap, EntityHashSet},
-        hierarchy::Children,
         lifecycle::RemovedComponents,
         query::{Changed, Or, With, Without},
         resource::Resource,
@@ -19,20 +18,19 @@ use bevy::{
     },
     math::{Mat3, Vec2, Vec3},
     mesh::Mesh3d,
-    prelude::DetectChanges,
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, BufferBinding,
             BufferUsages, CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache,
-            ShaderStages, ShaderType, SpecializedComputePipeline, SpecializedComputePipelines,
-            StorageBuffer, UniformBuffer,
+            ShaderStages, SpecializedComputePipeline, SpecializedComputePipelines, UniformBuffer,
             binding_types::{
                 storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer,
                 uniform_buffer_sized,
             },
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+        sync_world::MainEntityHashSet,
     },
     shader::Shader,
     transform::components::GlobalTransform,
@@ -40,30 +38,21 @@ use bevy::{
 
 use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
-    groups::{ObjectGroups, extract_object_groups},
+    changes::{ChangedObjects, NoteChanges},
+    groups::ObjectGroups,
     object_ids::ObjectIds,
-    simplification::{BY_DISTANCE, ObjectSimplification, dials},
+    shared::Shared,
+    simplification::{BY_DISTANCE, Dials},
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
-    gpu::{buffer, compute_pass, entry},
+    gpu::{Table, buffer, compute_pass, entry},
     schedule::{ComicsSystems, PrepareComics},
 };
 
 /// Bytes of the place of an id, and the smallest number of them in a table.
 const PLACE: u64 = 16;
 const LEAST_PLACES: u64 = 1024;
-
-/// `Bounds` of `depths.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-struct BoundsUniform {
-    centre: Vec3,
-    id: u32,
-    half: Vec3,
-    state: u32,
-    dial: Vec2,
-    unused_pair: Vec2,
-}
 
 /// A box in world space, along its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,23 +94,24 @@ const NOWHERE: u32 = 2;
 
 /// The boxes of all objects, while some view asks for their places.
 #[derive(Resource, Default)]
-struct ObjectBounds {
+pub(super) struct ObjectBounds {
     /// The object of each mesh, and the mesh's box.
     meshes: EntityHashMap<(Entity, Bounds)>,
     /// The meshes of each object, and the box around them.
     objects: EntityHashMap<(Vec<Entity>, Bounds)>,
-    /// The dials of the objects that have a simplification of their own.
-    dials: EntityHashMap<Vec2>,
+    /// The dials of the meshes that have a simplification of their own.
+    dials: Shared<Vec2>,
     /// Whether some view asked in the last frame.
     asked: bool,
-    /// Whether the buffer has yet to follow.
-    changed: bool,
-    buffer: StorageBuffer<Vec<BoundsUniform>>,
+    /// The objects that the table has yet to follow.
+    touched: EntityHashSet,
+    /// `Bounds` of `depths.wgsl`, by id.
+    pub table: Table<12>,
 }
 
 impl ObjectBounds {
-    /// Sets the box of a mesh, or that it has none. Notes the objects whose boxes follow.
-    fn set(&mut self, mesh: Entity, found: Option<(Entity, Bounds)>, touched: &mut EntityHashSet) {
+    /// Sets the box of a mesh, or that it has none.
+    fn set(&mut self, mesh: Entity, found: Option<(Entity, Bounds)>) {
         let before = match found {
             Some(found) => self.meshes.insert(mesh, found),
             None => self.meshes.remove(&mesh),
@@ -130,7 +120,7 @@ impl ObjectBounds {
             return;
         }
         let [old, new] = [before, found].map(|known| known.map(|(object, _)| object));
-        touched.extend(old.into_iter().chain(new));
+        self.touched.extend(old.into_iter().chain(new));
         if old == new {
             return;
         }
@@ -143,32 +133,79 @@ impl ObjectBounds {
         }
     }
 
-    /// Finds the boxes of objects anew.
-    fn unite(&mut self, touched: EntityHashSet) {
-        self.changed |= !touched.is_empty();
-        for object in touched {
-            let Some((meshes, around)) = self.objects.get_mut(&object) else {
+    /// Finds the boxes of objects whose meshes have changed.
+    fn unite(&mut self) {
+        for object in &self.touched {
+            let Some((meshes, around)) = self.objects.get_mut(object) else {
                 continue;
             };
             let boxes = meshes.iter().filter_map(|mesh| self.meshes.get(mesh));
             match boxes.map(|(_, bounds)| *bounds).reduce(Bounds::with) {
                 Some(bounds) => *around = bounds,
                 None => {
-                    self.objects.remove(&object);
+                    self.objects.remove(object);
                 }
             }
         }
     }
 
+    /// The entry of an object in the table.
+    fn entry(&self, object: Entity, id: u16, is_new: bool) -> [u32; 12] {
+        let Some((meshes, found)) = self.objects.get(&object) else {
+            return nowhere(id);
+        };
+        let [x, y, z] = found.low.midpoint(found.high).to_array().map(f32::to_bits);
+        let half = 0.5 * (found.high - found.low);
+        let [across, down, deep] = half.to_array().map(f32::to_bits);
+        let state = if is_new { FRESH } else { KNOWN };
+        let dial = meshes.iter().find_map(|mesh| self.dials.get(*mesh));
+        let [factor, offset] = dial.unwrap_or(&BY_DISTANCE).to_array().map(f32::to_bits);
+        let id = u32::from(id);
+        [x, y, z, id, across, down, deep, state, factor, offset, 0, 0]
+    }
+
+    /// Brings the table up to date.
+    fn fill(&mut self, ids: &ObjectIds) {
+        let touched = std::mem::take(&mut self.touched);
+        let mut table = std::mem::take(&mut self.table);
+        // The id 0 is that of no object, and the table is never empty.
+        for at in table.len()..=ids.last() {
+            table.set(at, [0; 12]);
+        }
+        if ids.are_new() || table.buffer().is_none() {
+            for (object, id, is_new) in ids.of_objects() {
+                table.set(usize::from(id), self.entry(object, id, is_new));
+            }
+            for id in ids.shared() {
+                table.set(usize::from(id), nowhere(id));
+            }
+        } else {
+            for object in touched {
+                if let Some(id) = ids.alone(object) {
+                    table.set(usize::from(id), self.entry(object, id, false));
+                }
+            }
+        }
+        self.table = table;
+    }
+
     /// The boxes of this frame: the buffer may be longer, and the shader reads its length.
     fn binding(&self) -> Option<BindingResource<'_>> {
-        let size = self.buffer.get().len() as u64 * BoundsUniform::min_size().get();
+        let size = 48 * self.table.len() as u64;
         Some(BindingResource::Buffer(BufferBinding {
-            buffer: self.buffer.buffer()?,
+            buffer: self.table.buffer()?,
             offset: 0,
             size: Some(NonZero::new(size)?),
         }))
     }
+}
+
+/// The entry of an id that several objects have, or of an object without a box.
+fn nowhere(id: u16) -> [u32; 12] {
+    let mut entry = [0; 12];
+    entry[3] = u32::from(id);
+    entry[7] = NOWHERE;
+    entry
 }
 
 /// Meshes with their boxes and places.
@@ -181,17 +218,14 @@ type OtherBox = (
 
 fn extract_bounds(
     views: Query<(), With<ObjectDepthRequest>>,
-    groups: Res<ObjectGroups>,
+    (groups, regrouped): (Res<ObjectGroups>, Res<ChangedObjects>),
     meshes: Extract<Query<Boxed, With<Mesh3d>>>,
     changed: Extract<Query<Boxed, OtherBox>>,
     (mut unmeshed, mut unboxed): (
         Extract<RemovedComponents<Mesh3d>>,
         Extract<RemovedComponents<Aabb>>,
     ),
-    (dialled, children): (
-        Extract<Query<(Entity, &ObjectSimplification)>>,
-        Extract<Query<&Children>>,
-    ),
+    dials: Extract<Res<Dials>>,
     mut bounds: ResMut<ObjectBounds>,
 ) {
     let bounds = &mut *bounds;
@@ -206,29 +240,32 @@ fn extract_bounds(
         let bounds = Bounds::of(aabb, at)?;
         Some((groups.object(mesh), bounds))
     };
-    let mut touched = EntityHashSet::default();
-    if !bounds.asked || groups.is_changed() {
-        bounds.asked = true;
-        bounds.meshes.clear();
-        bounds.objects.clear();
-        bounds.changed = true;
+    if !std::mem::replace(&mut bounds.asked, true) {
         for mesh in &meshes {
-            bounds.set(mesh.0, found(mesh), &mut touched);
+            bounds.set(mesh.0, found(mesh));
         }
     } else {
         for mesh in gone.into_iter().filter(|mesh| !meshes.contains(*mesh)) {
-            bounds.set(mesh, None, &mut touched);
+            bounds.set(mesh, None);
         }
         for mesh in &changed {
-            bounds.set(mesh.0, found(mesh), &mut touched);
+            bounds.set(mesh.0, found(mesh));
+        }
+        for mesh in regrouped
+            .0
+            .iter()
+            .filter_map(|mesh| meshes.get(mesh.id()).ok())
+        {
+            bounds.set(mesh.0, found(mesh));
         }
     }
-    bounds.unite(touched);
-    let dials = dials(&dialled, &children).into_iter();
-    let dials = dials.filter_map(|(mesh, dial)| Some((bounds.meshes.get(&mesh)?.0, dial)));
-    let dials = dials.collect();
-    bounds.changed |= bounds.dials != dials;
-    bounds.dials = dials;
+    let mut dialled = MainEntityHashSet::default();
+    bounds.dials.follow(&dials.0, &mut dialled);
+    for mesh in dialled {
+        let object = bounds.meshes.get(&mesh.id()).map(|(object, _)| *object);
+        bounds.touched.extend(object);
+    }
+    bounds.unite();
 }
 
 /// On a view whose effects treat objects as a whole: the table of their places.
@@ -324,33 +361,8 @@ fn prepare_places(
     if views.is_empty() {
         return;
     }
-    let bounds = &mut *bounds;
-    if std::mem::take(&mut bounds.changed) || ids.are_new() || bounds.buffer.buffer().is_none() {
-        let nowhere = |id| BoundsUniform {
-            id: u32::from(id),
-            state: NOWHERE,
-            ..BoundsUniform::default()
-        };
-        let found = ids.of_objects().map(|(object, id, is_new)| {
-            let Some((_, found)) = bounds.objects.get(&object) else {
-                return nowhere(id);
-            };
-            BoundsUniform {
-                centre: found.low.midpoint(found.high),
-                id: u32::from(id),
-                half: 0.5 * (found.high - found.low),
-                state: if is_new { FRESH } else { KNOWN },
-                dial: bounds.dials.get(&object).copied().unwrap_or(BY_DISTANCE),
-                ..BoundsUniform::default()
-            }
-        });
-        let shared = ids.shared().map(nowhere);
-        let mut found: Vec<_> = found.chain(shared).collect();
-        // A buffer is never empty. The id 0 is left out.
-        found.push(BoundsUniform::default());
-        bounds.buffer.set(found);
-        bounds.buffer.write_buffer(&device, &queue);
-    }
+    bounds.fill(&ids);
+    bounds.table.write(&device, &queue);
     let places = (ids.last() as u64 + 1).next_power_of_two();
     let size = PLACE * places.max(LEAST_PLACES);
     for (entity, request, known, table) in &views {
@@ -409,7 +421,7 @@ fn place_objects(
         .create_bind_group("comics_object_depths", &layout, &entries);
     let encoder = ctx.command_encoder();
     let mut pass = compute_pass(encoder, "comics_object_depths", (pipeline, &group), &[]);
-    pass.dispatch_workgroups((bounds.buffer.get().len() as u32).div_ceil(64), 1, 1);
+    pass.dispatch_workgroups((bounds.table.len() as u32).div_ceil(64), 1, 1);
 }
 
 fn init_pipeline(
@@ -432,7 +444,7 @@ pub(super) fn build(render_app: &mut SubApp) {
         .init_gpu_resource::<ObjectBounds>()
         .init_gpu_resource::<SpecializedComputePipelines<PlacePipeline>>()
         .add_systems(RenderStartup, init_pipeline)
-        .add_systems(ExtractSchedule, extract_bounds.after(extract_object_groups))
+        .add_systems(ExtractSchedule, extract_bounds.after(NoteChanges))
         .add_systems(Render, prepare_places.in_set(PrepareComics::Services))
         .add_systems(
             Core3d,

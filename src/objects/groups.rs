@@ -7,23 +7,23 @@ use bevy::{
     asset::AssetPath,
     ecs::{
         component::Component,
-        entity::{Entity, EntityHashMap, EntityHashSet},
+        entity::{Entity, EntityHashSet},
         hierarchy::{ChildOf, Children},
         lifecycle::{Discard, Insert, Remove},
         observer::On,
         query::Has,
         reflect::ReflectComponent,
         resource::Resource,
-        system::{Query, Res, ResMut},
+        system::{Query, ResMut},
     },
     mesh::Mesh3d,
     platform::collections::HashMap,
-    prelude::{App, DetectChanges, DetectChangesMut},
+    prelude::{App, DetectChangesMut},
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::Extract,
+    render::sync_world::MainEntityHashSet,
 };
 
-use super::changes::ChangedObjects;
+use super::{changes::Follow, shared::Shared};
 
 /// All meshes of this entity and of its descendants are one object: between them, there
 /// are no [object edges](crate::lines::ObjectEdges).
@@ -45,36 +45,41 @@ use super::changes::ChangedObjects;
 pub struct OutlineGroup;
 
 /// The longest way up to a group. It ends walks in hierarchies that are circles.
-const DEEPEST: usize = 65_536;
+pub(super) const DEEPEST: usize = 65_536;
 
 /// The objects that meshes are parts of. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Default)]
 pub(crate) struct ObjectGroups {
     /// The entity with the nearest `OutlineGroup`, of every mesh in a group.
-    roots: EntityHashMap<Entity>,
+    roots: Shared<Entity>,
     /// The first primitive of the same glTF node, of every primitive that shares its node
     /// with others and is in no group.
-    primitives: EntityHashMap<Entity>,
+    primitives: Shared<Entity>,
 }
 
 impl ObjectGroups {
     /// Whether a mesh has the id of a group, or shares it with other primitives.
     pub fn is_shared(&self, mesh: Entity) -> bool {
-        self.roots.contains_key(&mesh) || self.primitives.contains_key(&mesh)
+        self.roots.get(mesh).or(self.primitives.get(mesh)).is_some()
     }
 
     /// The entity whose id the mesh has.
     pub fn object(&self, mesh: Entity) -> Entity {
-        let other = self.roots.get(&mesh).or(self.primitives.get(&mesh));
+        let other = self.roots.get(mesh).or(self.primitives.get(mesh));
         other.copied().unwrap_or(mesh)
+    }
+
+    /// The meshes whose object may have changed last.
+    pub fn changed(&self) -> impl Iterator<Item = Entity> {
+        let changed = self.roots.changed().iter().chain(self.primitives.changed());
+        changed.copied()
     }
 }
 
-/// Sets or removes an entry; `true` if that changed the map.
-fn put(map: &mut EntityHashMap<Entity>, mesh: Entity, object: Option<Entity>) -> bool {
-    match object {
-        Some(object) => map.insert(mesh, object) != Some(object),
-        None => map.remove(&mesh).is_some(),
+impl Follow for ObjectGroups {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.roots.follow(&main.roots, changed);
+        self.primitives.follow(&main.primitives, changed);
     }
 }
 
@@ -160,8 +165,10 @@ pub(crate) fn update_object_groups(
         parents: EntityHashSet::default(),
         changed: false,
     };
+    update.groups.roots.begin();
+    update.groups.primitives.begin();
     for (child, parent) in changes.left {
-        if update.groups.primitives.contains_key(&child) {
+        if update.groups.primitives.get(child).is_some() {
             update.parents.insert(parent);
         }
     }
@@ -214,18 +221,15 @@ impl Update<'_, '_, '_> {
             let (child_of, children, mesh, _) =
                 self.tree.get(entity).unwrap_or((None, None, None, false));
             let is_primitive = mesh.is_some_and(|m| m.path().and_then(primitive).is_some())
-                || self.groups.primitives.contains_key(&entity);
+                || self.groups.primitives.get(entity).is_some();
             let parent = child_of.filter(|_| mesh.is_some()).map(ChildOf::parent);
-            self.changed |= put(
-                &mut self.groups.roots,
-                entity,
-                root.filter(|_| mesh.is_some()),
-            );
+            let root = root.filter(|_| mesh.is_some());
+            self.changed |= self.groups.roots.set(entity, root);
             match parent.filter(|_| is_primitive) {
                 Some(parent) => {
                     self.parents.insert(parent);
                 }
-                None => self.changed |= put(&mut self.groups.primitives, entity, None),
+                None => self.changed |= self.groups.primitives.set(entity, None),
             }
             let children = children.into_iter().flat_map(|c| c.iter().copied());
             below.extend(children.filter(|child| !self.is_root(*child)));
@@ -249,7 +253,7 @@ impl Update<'_, '_, '_> {
             let mesh = self.tree.get(child).ok().and_then(|(_, _, mesh, _)| mesh);
             let path = mesh.and_then(|mesh| mesh.path());
             let found = path.and_then(|path| Some((path, primitive(path)?)));
-            let grouped = self.groups.roots.contains_key(&child);
+            let grouped = self.groups.roots.get(child).is_some();
             let Some((path, mesh)) = found.filter(|_| !grouped) else {
                 others.push(child);
                 continue;
@@ -264,11 +268,11 @@ impl Update<'_, '_, '_> {
         for members in objects.values() {
             let first = Some(members[0]).filter(|_| members.len() > 1);
             for member in members {
-                changed |= put(primitives, *member, first);
+                changed |= primitives.set(*member, first);
             }
         }
         for other in others {
-            changed |= put(primitives, other, None);
+            changed |= primitives.set(other, None);
         }
         self.changed |= changed;
     }
@@ -283,18 +287,6 @@ fn primitive<'a>(path: &'a AssetPath) -> Option<&'a str> {
         number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
     };
     (numbered(mesh, "Mesh") && numbered(primitive, "Primitive")).then_some(mesh)
-}
-
-pub(crate) fn extract_object_groups(
-    main: Extract<Res<ObjectGroups>>,
-    mut groups: ResMut<ObjectGroups>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        changed.note(&groups.roots, &main.roots);
-        changed.note(&groups.primitives, &main.primitives);
-        groups.clone_from(&main);
-    }
 }
 
 #[cfg(test)]

@@ -41,7 +41,8 @@ use super::{
     marks::Marks,
     object_ids::ObjectIds,
     phase::{Bin, Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
-    sections::{SectionBuffer, SectionTables},
+    ranged::InRange,
+    sections::SectionStarts,
     transparent::TransparentItems,
 };
 use crate::gpu::texture;
@@ -105,7 +106,11 @@ type Items<'w> = (
 );
 
 /// What has changed since the last frame.
-type Changes<'w> = (Res<'w, DirtySpecializations>, Res<'w, ChangedObjects>);
+type Changes<'w, 's> = (
+    Res<'w, DirtySpecializations>,
+    Res<'w, ChangedObjects>,
+    InRange<'w, 's>,
+);
 
 pub(super) fn queue_object_ids(
     mut commands: Commands,
@@ -158,8 +163,11 @@ pub(super) fn queue_object_ids(
             records: &mut records,
             key,
         };
-        queue.fade(fading, class);
-        queue.update((view.retained_view_entity, class), &changes);
+        let out = changes.2.out_of_range(entity, view);
+        let fading = fading.filter(|_| key.targets.is_some());
+        let fading = fading.map(|meshes| meshes.0.clone());
+        let levels = [out, fading.unwrap_or_default()];
+        queue.update((view.retained_view_entity, class), &changes, levels);
         if test.compiles_ahead() {
             phase.note_ahead(&test, &items);
         }
@@ -196,8 +204,14 @@ impl Queue<'_, '_> {
     fn update(
         &mut self,
         (view, class): (RetainedViewEntity, &RenderVisibleEntitiesClass),
-        (dirty, changed): &Changes,
+        (dirty, changed, _): &Changes,
+        [out_of_range, fading]: [MainEntityHashSet; 2],
     ) {
+        let before = std::mem::replace(&mut self.phase.out_of_range, out_of_range);
+        let crossed = before.symmetric_difference(&self.phase.out_of_range);
+        let faded = std::mem::replace(&mut self.phase.fading, fading);
+        let fades = faded.symmetric_difference(&self.phase.fading);
+        let crossed: Vec<_> = crossed.chain(fades).copied().collect();
         let outdated = dirty.must_wipe_specializations_for_view(view);
         if self.phase.begin(self.key, outdated, &mut self.records.ids) {
             for (_, mesh) in class.iter_visible() {
@@ -205,36 +219,21 @@ impl Queue<'_, '_> {
             }
         } else {
             let pending = std::mem::take(&mut self.phase.pending);
-            for mesh in dirty.iter_to_dequeue(view, class).chain(&changed.0) {
+            let others = changed.0.iter().chain(&crossed);
+            for mesh in dirty.iter_to_dequeue(view, class).chain(others.clone()) {
                 self.phase.remove(*mesh, &mut self.records.ids);
             }
             for (_, mesh) in dirty.iter_to_queue(view, class, &HashSet::default()) {
                 self.add(*mesh);
             }
-            let others = changed.0.iter().chain(&pending);
-            for mesh in others.filter(|mesh| is_visible(class, **mesh)) {
+            for mesh in others
+                .chain(&pending)
+                .filter(|mesh| is_visible(class, **mesh))
+            {
                 self.add(*mesh);
             }
         }
         self.phase.settle();
-    }
-
-    /// Takes away the meshes that begin or end to fade; [`update`](Self::update) adds them again.
-    fn fade(&mut self, fading: Option<&FadingMeshes>, class: &RenderVisibleEntitiesClass) {
-        let now = match fading.filter(|_| self.key.targets.is_some()) {
-            Some(fading) => fading.0.clone(),
-            None if self.phase.fading.is_empty() => return,
-            None => MainEntityHashSet::default(),
-        };
-        let changed = now.symmetric_difference(&self.phase.fading).copied();
-        let changed: Vec<_> = changed.collect();
-        self.phase.fading = now;
-        for mesh in changed {
-            self.phase.remove(mesh, &mut self.records.ids);
-            if is_visible(class, mesh) {
-                self.phase.pending.insert(mesh);
-            }
-        }
     }
 
     /// The bin of a mesh that fades: it is drawn whole into the depth that effects read.
@@ -246,7 +245,7 @@ impl Queue<'_, '_> {
 
     /// Adds a visible mesh, if it is not there.
     fn add(&mut self, mesh: MainEntity) {
-        if self.phase.contains(mesh) {
+        if self.phase.contains(mesh) || self.phase.out_of_range.contains(&mesh) {
             return;
         }
         let drawn = Drawn::Ids {
@@ -298,17 +297,16 @@ pub(super) struct Records<'w> {
     levels: Res<'w, Levels>,
     marks: Res<'w, Marks>,
     writes: Res<'w, DepthWrites>,
-    sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
+    sections: Res<'w, SectionStarts>,
 }
 
 impl Records<'_> {
-    /// Id, style slot, first word of the sections and bits of the least alpha of a mesh.
+    /// Id, style slot, start of the sections and bits of the least alpha of a mesh.
     fn of(&mut self, mesh: Entity, fades: bool) -> [u32; 4] {
-        let slot = self.styles.slots.get(&mesh).copied().unwrap_or(0);
+        let slot = self.styles.slots.get(mesh).copied().unwrap_or(0);
         let id = self.ids.give(self.levels.object(self.groups.object(mesh)));
-        let (buffer, tables) = &self.sections;
-        let start = buffer.start(tables, mesh).unwrap_or(0);
-        let cutoff = self.writes.cutoffs.get(&mesh);
+        let start = self.sections.get(mesh).unwrap_or(0);
+        let cutoff = self.writes.cutoffs.get(mesh);
         let cutoff = cutoff.copied().or(fades.then_some(MASKED_ALPHA));
         [
             u32::from(id),

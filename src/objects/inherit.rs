@@ -1,64 +1,284 @@
 //! Components that apply to descendants too.
+//!
+//! An entity takes from the nearest entity on the way up, itself included, that has the component:
+//! always from itself, and from others if they let it.
 
 use bevy::{
     app::App,
     ecs::{
-        change_detection::DetectChanges,
         component::Component,
-        entity::{Entity, EntityHashMap},
+        entity::{Entity, EntityHashMap, EntityHashSet},
         hierarchy::{ChildOf, Children},
-        lifecycle::{Insert, Remove, RemovedComponents},
+        lifecycle::{Insert, Remove},
+        message::{Message, MessageReader, MessageWriter},
         observer::On,
-        query::Changed,
-        resource::Resource,
-        system::{Query, Res, ResMut, SystemParam},
+        query::{Changed, QueryFilter, ROQueryItem, ReadOnlyQueryData},
+        system::{Local, Query, SystemParam},
     },
-    prelude::DetectChangesMut,
 };
 
-/// Changes when some entity gets another parent, or none.
-#[derive(Resource, Default)]
-pub(super) struct Tree;
+use super::groups::DEEPEST;
+
+/// The entity got another parent or none, or lost a component that others inherit.
+#[derive(Message)]
+pub(super) struct Moved(Entity);
 
 pub(super) fn build(app: &mut App) {
-    app.init_resource::<Tree>()
-        .add_observer(|_: On<Insert, ChildOf>, mut tree: ResMut<Tree>| tree.set_changed())
-        .add_observer(|_: On<Remove, ChildOf>, mut tree: ResMut<Tree>| tree.set_changed());
+    app.add_message::<Moved>().add_observer(
+        |on: On<Insert, ChildOf>, mut moved: MessageWriter<Moved>| {
+            moved.write(Moved(on.entity));
+        },
+    );
+    watch::<ChildOf>(app);
 }
 
-/// Whether a component, or the set of entities that inherit it, may have changed.
-#[derive(SystemParam)]
-pub(super) struct Inherited<'w, 's, C: Component> {
-    changed: Query<'w, 's, (), Changed<C>>,
-    removed: RemovedComponents<'w, 's, C>,
-    tree: Res<'w, Tree>,
+/// Notes the entities that lose a component.
+pub(super) fn watch<C: Component>(app: &mut App) {
+    app.add_observer(|on: On<Remove, C>, mut moved: MessageWriter<Moved>| {
+        moved.write(Moved(on.entity));
+    });
 }
 
-impl<C: Component> Inherited<'_, '_, C> {
-    pub fn is_changed(&mut self) -> bool {
-        let removed = self.removed.read().count() > 0;
-        removed || self.tree.is_changed() || !self.changed.is_empty()
+/// What entities inherit: a component, or several that go together.
+pub(super) trait Heritage: 'static {
+    /// What an entity has of its own.
+    type Own: ReadOnlyQueryData + 'static;
+    /// Finds the entities of which that is new or other.
+    type Changed: QueryFilter + 'static;
+
+    /// Whether descendants inherit it.
+    fn passes_on(own: &ROQueryItem<'_, '_, Self::Own>) -> bool;
+}
+
+/// A component that descendants inherit by itself.
+pub(super) trait Inherit: Component {
+    fn is_inherited(&self) -> bool;
+}
+
+impl<C: Inherit> Heritage for C {
+    type Own = &'static C;
+    type Changed = Changed<C>;
+
+    fn passes_on(own: &ROQueryItem<'_, '_, Self::Own>) -> bool {
+        own.is_inherited()
     }
 }
 
-/// Adds an entity with what a component of it says; if that is `inherited`, its descendants
-/// too, up to those that have the component themselves.
-pub(super) fn inherit<T: Copy>(
-    into: &mut EntityHashMap<T>,
-    (entity, said): (Entity, T),
-    inherited: bool,
-    children: &Query<&Children>,
-    has_own: impl Fn(Entity) -> bool,
-) {
-    into.insert(entity, said);
-    let mut below = vec![entity];
-    while inherited && let Some(parent) = below.pop() {
-        let children = children.get(parent).into_iter();
-        for child in children.flat_map(|c| c.iter().copied()) {
-            if !has_own(child) {
-                into.insert(child, said);
-                below.push(child);
+/// Keeps who inherits from whom. Every component has to be [watched](watch).
+#[derive(SystemParam)]
+pub(super) struct Inherited<'w, 's, H: Heritage> {
+    own: Query<'w, 's, <H as Heritage>::Own>,
+    changed: Query<'w, 's, Entity, <H as Heritage>::Changed>,
+    moved: MessageReader<'w, 's, Moved>,
+    parents: Query<'w, 's, &'static ChildOf>,
+    children: Query<'w, 's, &'static Children>,
+    /// The entity that each entity takes from.
+    sources: Local<'s, EntityHashMap<Entity>>,
+}
+
+impl<H: Heritage> Inherited<'_, '_, H> {
+    /// Looks for changes; returns the entities that may take something else now, or nothing. To be
+    /// called once in every frame.
+    pub fn update(&mut self) -> EntityHashSet {
+        let moved = self.moved.read().map(|moved| moved.0);
+        let moved: Vec<Entity> = moved.collect();
+        let changed: EntityHashSet = self.changed.iter().collect();
+        let mut affected = EntityHashSet::default();
+        if self.sources.is_empty() && changed.is_empty() {
+            return affected;
+        }
+        let mut visited = EntityHashSet::default();
+        for top in changed.iter().copied().chain(moved) {
+            let source = self.nearest(top);
+            if self.sources.get(&top).copied() == source && !changed.contains(&top) {
+                continue;
+            }
+            let mut below = vec![(top, source)];
+            while let Some((entity, source)) = below.pop() {
+                if !visited.insert(entity) {
+                    continue;
+                }
+                let before = match source {
+                    Some(source) => self.sources.insert(entity, source),
+                    None => self.sources.remove(&entity),
+                };
+                if before != source || source.is_some_and(|source| changed.contains(&source)) {
+                    affected.insert(entity);
+                }
+                let passed_on = match self.own.get(entity) {
+                    Ok(own) => Some(entity).filter(|_| H::passes_on(&own)),
+                    Err(_) => source,
+                };
+                let children = self.children.get(entity).into_iter().flatten().copied();
+                let heirs = children.filter(|child| !self.own.contains(*child));
+                below.extend(heirs.map(|child| (child, passed_on)));
             }
         }
+        affected
+    }
+
+    /// The entity that an entity takes from, and what it takes.
+    pub fn of(&self, entity: Entity) -> Option<(Entity, ROQueryItem<'_, '_, H::Own>)> {
+        let source = *self.sources.get(&entity)?;
+        Some((source, self.own.get(source).ok()?))
+    }
+
+    fn nearest(&self, entity: Entity) -> Option<Entity> {
+        let mut at = entity;
+        for _ in 0..DEEPEST {
+            if let Ok(own) = self.own.get(at) {
+                return Some(at).filter(|_| at == entity || H::passes_on(&own));
+            }
+            at = self.parents.get(at).ok()?.parent();
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{
+        app::PostUpdate,
+        ecs::{resource::Resource, system::ResMut, world::World},
+    };
+
+    use super::*;
+
+    #[derive(Component)]
+    struct Paint {
+        color: u32,
+        inherit: bool,
+    }
+
+    impl Inherit for Paint {
+        fn is_inherited(&self) -> bool {
+            self.inherit
+        }
+    }
+
+    /// What follows from the changes alone, and how many entities they affected in this frame.
+    #[derive(Resource, Default)]
+    struct Painted(EntityHashMap<u32>, usize);
+
+    fn paint(mut inherited: Inherited<Paint>, mut painted: ResMut<Painted>) {
+        let affected = inherited.update();
+        painted.1 = affected.len();
+        for entity in affected {
+            match inherited.of(entity) {
+                Some((_, paint)) => painted.0.insert(entity, paint.color),
+                None => painted.0.remove(&entity),
+            };
+        }
+    }
+
+    fn app() -> App {
+        let mut app = App::new();
+        build(&mut app);
+        watch::<Paint>(&mut app);
+        app.init_resource::<Painted>()
+            .add_systems(PostUpdate, paint);
+        app
+    }
+
+    /// The paint of every entity, from the whole hierarchy.
+    fn scan(world: &World, entities: &[Entity]) -> EntityHashMap<u32> {
+        let of = |entity: &Entity| {
+            let mut at = *entity;
+            loop {
+                if let Some(paint) = world.get::<Paint>(at) {
+                    return (at == *entity || paint.inherit).then_some((*entity, paint.color));
+                }
+                at = world.get::<ChildOf>(at)?.parent();
+            }
+        };
+        entities.iter().filter_map(of).collect()
+    }
+
+    #[test]
+    fn updates_agree_with_a_scan() {
+        let mut app = app();
+        let mut state = 1u64;
+        let mut random = |below: usize| {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 33) as usize % below
+        };
+        let mut entities: Vec<Entity> = Vec::new();
+        for round in 0..2000 {
+            for _ in 0..random(5) {
+                let world = app.world_mut();
+                entities.retain(|entity| world.get_entity(*entity).is_ok());
+                let action = if entities.len() < 16 { 0 } else { random(9) };
+                if action == 0 {
+                    entities.push(world.spawn_empty().id());
+                    continue;
+                }
+                let [entity, other] = [(); 2].map(|()| entities[random(entities.len())]);
+                let above = |at: &Entity| world.get::<ChildOf>(*at).map(ChildOf::parent);
+                let is_circle = std::iter::successors(Some(other), above).any(|at| at == entity);
+                let mut entity = world.entity_mut(entity);
+                let color = random(3) as u32;
+                match action {
+                    1..=3 if !is_circle => {
+                        entity.insert(ChildOf(other));
+                    }
+                    4 => {
+                        entity.remove::<ChildOf>();
+                    }
+                    5 | 6 => {
+                        let inherit = random(4) > 0;
+                        entity.insert(Paint { color, inherit });
+                    }
+                    7 => {
+                        if let Some(mut paint) = entity.get_mut::<Paint>() {
+                            paint.color = color;
+                            paint.inherit = random(4) > 0;
+                        }
+                    }
+                    8 if random(3) == 0 => entity.despawn(),
+                    8 => {
+                        entity.remove::<Paint>();
+                    }
+                    _ => {}
+                }
+            }
+            app.update();
+            entities.retain(|entity| app.world().get_entity(*entity).is_ok());
+            let painted = &app.world().resource::<Painted>().0;
+            assert_eq!(*painted, scan(app.world(), &entities), "round {round}");
+        }
+    }
+
+    /// One that changes affects itself and its heirs, and a tree without paint nothing.
+    #[test]
+    fn changes_affect_only_heirs() {
+        let mut app = app();
+        let world = app.world_mut();
+        let paint = |color| Paint {
+            color,
+            inherit: true,
+        };
+        let painted: Vec<Entity> = (0..100).map(|at| world.spawn(paint(at)).id()).collect();
+        let child = world.spawn(ChildOf(painted[7])).id();
+        app.update();
+        let affected = |app: &mut App| {
+            app.update();
+            app.world().resource::<Painted>().1
+        };
+        assert_eq!(affected(&mut app), 0);
+        app.world_mut().entity_mut(painted[7]).insert(paint(5));
+        assert_eq!(affected(&mut app), 2);
+        let plain = app.world_mut().spawn_empty().id();
+        app.world_mut().spawn(ChildOf(plain));
+        assert_eq!(affected(&mut app), 0);
+        // Parents in a circle, which the engine does not prevent, end the walk.
+        app.world_mut().entity_mut(plain).insert(ChildOf(child));
+        app.world_mut()
+            .entity_mut(painted[7])
+            .insert(ChildOf(plain));
+        assert_eq!(affected(&mut app), 2);
+        app.world_mut().entity_mut(painted[7]).remove::<Paint>();
+        assert_eq!(affected(&mut app), 4);
     }
 }

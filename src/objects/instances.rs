@@ -81,20 +81,19 @@ impl ObjectIdPhase {
         let mut items = std::mem::take(&mut self.items);
         let mut buffers = std::mem::take(&mut self.buffers);
         items.clear();
-        buffers.work.clear();
-        buffers.records.clear();
+        let mut end = 0;
         for (bin, meshes) in self.bins() {
-            let first = buffers.work.len() as u32;
+            let first = end as u32;
             for Instance { input, record, .. } in meshes {
-                buffers.work.push(PreprocessWorkItem {
-                    input_index: *input,
-                    output_or_indirect_parameters_index: buffers.work.len() as u32,
-                });
-                buffers.records.push(*record);
+                buffers.work.set(end, [*input, end as u32]);
+                buffers.records.set(end, *record);
+                end += 1;
             }
-            let end = buffers.work.len() as u32;
-            items.extend((meshes.first()).map(|i| Self::draw_call(bin, i.mesh, first..end)));
+            let range = first..end as u32;
+            items.extend((meshes.first()).map(|i| Self::draw_call(bin, i.mesh, range)));
         }
+        buffers.work.truncate(end);
+        buffers.records.truncate(end);
         (self.items, self.buffers) = (items, buffers);
     }
 
@@ -107,7 +106,7 @@ impl ObjectIdPhase {
         let mut items = std::mem::take(&mut self.items);
         let mut buffers = std::mem::take(&mut self.buffers);
         items.clear();
-        buffers.records.clear();
+        let mut next = 0;
         for (bin, meshes) in self.bins() {
             let mut drawn = None;
             for Instance { mesh, record, .. } in meshes {
@@ -115,14 +114,16 @@ impl ObjectIdPhase {
                     continue;
                 };
                 let at = buffer.push(uniform).index;
-                while buffers.records.len() < at as usize {
-                    buffers.records.push([0; 4]);
+                for unused in next..at as usize {
+                    buffers.records.set(unused, [0; 4]);
                 }
-                buffers.records.push(*record);
+                next = at as usize + 1;
+                buffers.records.set(next - 1, *record);
                 drawn = Some((drawn.map_or((*mesh, at), |(first, _)| first), at + 1));
             }
             items.extend(drawn.map(|((mesh, first), end)| Self::draw_call(bin, mesh, first..end)));
         }
+        buffers.records.truncate(next);
         self.changed = false;
         (self.items, self.buffers) = (items, buffers);
     }
@@ -152,8 +153,8 @@ impl ObjectIdPhase {
     }
 
     fn upload(&mut self, device: &RenderDevice, queue: &RenderQueue) {
-        self.buffers.work.write_buffer(device, queue);
-        self.buffers.records.write_buffer(device, queue);
+        self.buffers.work.write(device, queue);
+        self.buffers.records.write(device, queue);
     }
 }
 
@@ -221,7 +222,7 @@ pub(super) fn bind_instances(
 ) {
     for phase in phases.0.values_mut() {
         let buffers = &mut phase.buffers;
-        buffers.expansion = if buffers.work.is_empty() {
+        buffers.expansion = if buffers.work.len() == 0 {
             None
         } else {
             expanding.expansion(buffers, (&device, &cache))

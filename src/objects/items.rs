@@ -45,7 +45,7 @@ use super::{
         IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
         reads_material,
     },
-    sections::{SectionBuffer, SectionTables},
+    sections::SectionStarts,
 };
 
 pub(super) struct SetObjectTable<const I: usize>;
@@ -235,20 +235,19 @@ pub(super) struct IdItems<'w> {
     wide: Res<'w, WideMeshes>,
     test: Res<'w, DepthTest>,
     backdrops: Res<'w, Backdrops>,
-    sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
+    sections: Res<'w, SectionStarts>,
     pub cache: Res<'w, PipelineCache>,
 }
 
 impl IdItems<'_> {
     fn variant(&self, entity: Entity, mesh: &RenderMesh, widths: bool) -> IdVariant {
-        let (buffer, tables) = &self.sections;
         let wanted = widths && self.wide.contains(entity);
         let has_colors = mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
         if wanted && !has_colors {
             warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colours");
         }
         IdVariant {
-            sections: buffer.start(tables, entity).is_some(),
+            sections: self.sections.get(entity).is_some(),
             widths,
             vertex_widths: wanted && has_colors,
             tolerant: self.test.tolerant(),

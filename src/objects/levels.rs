@@ -10,23 +10,22 @@ use bevy::{
     app::{App, PostUpdate},
     camera::{primitives::Aabb, visibility::VisibilityRange},
     ecs::{
-        change_detection::DetectChanges,
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::ChildOf,
         lifecycle::RemovedComponents,
         query::{Changed, Or, With},
         resource::Resource,
-        system::{Query, Res, ResMut},
+        system::{Query, ResMut},
     },
     math::Vec3,
     mesh::Mesh3d,
     platform::collections::HashMap,
-    render::{Extract, sync_world::MainEntityHashSet},
+    render::sync_world::MainEntityHashSet,
     transform::components::{GlobalTransform, Transform},
 };
 
-use super::{changes::ChangedObjects, table::ObjectStyles};
+use super::{changes::Follow, shared::Shared, table::ObjectStyles};
 
 /// The margins of a range, at whose distances a mesh fades; `None` where it does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,17 +61,18 @@ impl Margins {
 type Place = (Option<Entity>, [u32; 3]);
 
 /// The meshes that fade at some distance. Both worlds have a copy.
-#[derive(Resource, Clone, Default)]
+#[derive(Resource, Default)]
 pub(crate) struct Levels {
+    /// Empty in the render world.
     margins: EntityHashMap<Margins>,
     /// Of levels that fade into each other, the one whose id they have.
-    first: EntityHashMap<Entity>,
+    first: Shared<Entity>,
 }
 
 impl Levels {
     /// The mesh whose id this one has.
     pub fn object(&self, mesh: Entity) -> Entity {
-        self.first.get(&mesh).copied().unwrap_or(mesh)
+        self.first.get(mesh).copied().unwrap_or(mesh)
     }
 
     /// The meshes that fade, seen from a point.
@@ -120,13 +120,15 @@ fn find_levels(
     mut styles: ResMut<ObjectStyles>,
 ) {
     let mut touched = Vec::new();
+    if changed.is_empty() && removed.is_empty() {
+        return;
+    }
+    levels.first.begin();
     for gone in removed.read() {
         if !changed.contains(gone) {
             touched.extend(by_place.put(gone, None));
-            if levels.margins.contains_key(&gone) {
-                levels.margins.remove(&gone);
-                levels.first.remove(&gone);
-            }
+            levels.margins.remove(&gone);
+            levels.first.set(gone, None);
         }
     }
     for (mesh, range, parent, at) in &changed {
@@ -139,7 +141,7 @@ fn find_levels(
         match margins {
             Some(margins) => levels.margins.insert(mesh, margins),
             None => {
-                levels.first.remove(&mesh);
+                levels.first.set(mesh, None);
                 levels.margins.remove(&mesh)
             }
         };
@@ -193,22 +195,15 @@ impl Levels {
             let before = sorted[..i]
                 .iter()
                 .find(|(before, _)| before.fades_into(margins));
-            match before.map(|(_, before)| self.object(*before)) {
-                Some(first) => self.first.insert(*mesh, first),
-                None => self.first.remove(mesh),
-            };
+            let first = before.map(|(_, before)| self.object(*before));
+            self.first.set(*mesh, first);
         }
     }
 }
 
-pub(super) fn extract_levels(
-    main: Extract<Res<Levels>>,
-    mut levels: ResMut<Levels>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        changed.note(&levels.first, &main.first);
-        levels.clone_from(&main);
+impl Follow for Levels {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.first.follow(&main.first, changed);
     }
 }
 

@@ -4,26 +4,22 @@
 use bevy::{
     color::LinearRgba,
     ecs::{
-        change_detection::DetectChangesMut,
         component::Component,
-        entity::{Entity, EntityHashMap, EntityHashSet},
-        hierarchy::Children,
+        entity::Entity,
         query::{Or, With, Without},
         reflect::ReflectComponent,
         resource::Resource,
         system::{Commands, Query, Res, ResMut, SystemParam},
     },
     platform::collections::HashSet,
-    prelude::DetectChanges,
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        Extract,
         render_resource::{
             BindGroup, IntoBinding, LoadOp, PipelineCache, RenderPassColorAttachment,
             TextureUsages, TextureView, UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
-        sync_world::MainEntity,
+        sync_world::MainEntityHashSet,
         texture::TextureCache,
         view::{ExtractedView, RetainedViewEntity},
     },
@@ -31,11 +27,12 @@ use bevy::{
 
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
-    changes::ChangedObjects,
-    inherit::{Inherited, inherit},
+    changes::Follow,
+    inherit::{Inherit, Inherited},
     phase::ObjectIdPhases,
     pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
+    shared::Shared,
     widths::WIDTH_FORMAT,
 };
 use crate::gpu;
@@ -76,48 +73,42 @@ impl Default for LineWidths {
 }
 
 /// The meshes with [`LineWidths`]. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
-pub(crate) struct WideMeshes(EntityHashSet);
+#[derive(Resource, Default)]
+pub(crate) struct WideMeshes(Shared<()>);
 
 impl WideMeshes {
     pub fn contains(&self, mesh: Entity) -> bool {
-        self.0.contains(&mesh)
+        self.0.get(mesh).is_some()
+    }
+}
+
+impl Follow for WideMeshes {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.0.follow(&main.0, changed);
+    }
+}
+
+impl Inherit for LineWidths {
+    fn is_inherited(&self) -> bool {
+        self.inherit
     }
 }
 
 /// Keeps [`WideMeshes`] up to date.
 pub(super) fn find_wide_meshes(
-    marked: Query<(Entity, &LineWidths)>,
-    children: Query<&Children>,
+    mut marked: Inherited<LineWidths>,
     mut meshes: ResMut<WideMeshes>,
     mut styles: ResMut<ObjectStyles>,
-    mut changes: Inherited<LineWidths>,
 ) {
-    if !changes.is_changed() || (marked.is_empty() && meshes.0.is_empty()) {
+    let changed = marked.update();
+    if changed.is_empty() {
         return;
     }
-    let mut found: EntityHashMap<()> = EntityHashMap::default();
-    for (entity, widths) in &marked {
-        let own = |child| marked.contains(child);
-        inherit(&mut found, (entity, ()), widths.inherit, &children, own);
+    meshes.0.begin();
+    for mesh in changed {
+        meshes.0.set(mesh, marked.of(mesh).map(|_| ()));
     }
-    meshes.set_if_neq(WideMeshes(found.into_keys().collect()));
-    let any = !meshes.0.is_empty();
-    if styles.widths != any {
-        styles.widths = any;
-    }
-}
-
-pub(super) fn extract_wide_meshes(
-    main: Extract<Res<WideMeshes>>,
-    mut meshes: ResMut<WideMeshes>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        let different = meshes.0.symmetric_difference(&main.0);
-        changed.0.extend(different.copied().map(MainEntity::from));
-        meshes.clone_from(&main);
-    }
+    styles.widths = !meshes.0.is_empty();
 }
 
 /// The views whose meshes were queued with pipelines that draw widths too.

@@ -5,23 +5,22 @@ use bevy::{
     app::{App, PostUpdate},
     color::{Color, Srgba},
     ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
-        query::{Or, With},
+        entity::Entity,
+        query::{AnyOf, Changed, Or},
         reflect::ReflectComponent,
         resource::Resource,
         schedule::IntoScheduleConfigs,
-        system::{Query, Res, ResMut},
+        system::ResMut,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::Extract,
+    render::sync_world::MainEntityHashSet,
 };
 
 use super::{
-    changes::ChangedObjects,
-    inherit::{Inherited, inherit},
+    changes::Follow,
+    inherit::{Heritage, Inherited, watch},
+    shared::Shared,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
@@ -172,85 +171,83 @@ impl XRayOutline {
 }
 
 /// The objects that are outlined by themselves. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
+#[derive(Resource, Default)]
 pub(crate) struct Marks {
     /// The lines of these objects.
     pub styles: ObjectStyles,
     /// The entity whose component marks a mesh.
-    roots: EntityHashMap<Entity>,
+    roots: Shared<Entity>,
 }
 
 impl Marks {
     /// The entity whose component marks a mesh, and the slot of its lines.
     pub fn of(&self, mesh: Entity) -> Option<(Entity, u8)> {
-        let slot = self.styles.slots.get(&mesh)?;
-        Some((*self.roots.get(&mesh)?, *slot))
+        let slot = self.styles.slots.get(mesh)?;
+        Some((*self.roots.get(mesh)?, *slot))
     }
 }
 
-/// Either component.
-type Marked = Or<(With<SelectionOutline>, With<XRayOutline>)>;
+impl Follow for Marks {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.styles.follow(&main.styles, changed);
+        self.roots.follow(&main.roots, changed);
+    }
+}
 
-fn assign_marks(
-    marked: Query<(Entity, Option<&SelectionOutline>, Option<&XRayOutline>), Marked>,
-    children: Query<&Children>,
-    (mut marks, mut styles): (ResMut<Marks>, ResMut<ObjectStyles>),
-    (mut selected, mut x_ray): (Inherited<SelectionOutline>, Inherited<XRayOutline>),
-) {
-    // Both are asked, so that each forgets what was removed.
-    let changed = [selected.is_changed(), x_ray.is_changed()].contains(&true);
-    if !changed || (marked.is_empty() && !marks.styles.any()) {
-        return;
-    }
-    let mut found: EntityHashMap<(Entity, ObjectStyleUniform)> = EntityHashMap::default();
-    for (entity, selected, hidden) in &marked {
-        let (uniform, inherited) = match (selected, hidden) {
-            (Some(selected), _) => (selected.uniform(), selected.inherit),
-            (None, Some(hidden)) => (hidden.uniform(), hidden.inherit),
-            (None, None) => continue,
-        };
-        let own = |child| marked.contains(child);
-        inherit(
-            &mut found,
-            (entity, (entity, uniform)),
-            inherited,
-            &children,
-            own,
-        );
-    }
-    let mut table = Marks::default();
-    for (mesh, (root, uniform)) in &found {
-        if uniform.opacity > 0.0 {
-            let slot = table.styles.slot(*uniform);
-            table.styles.slots.insert(*mesh, slot);
-            table.roots.insert(*mesh, *root);
+/// Either component; `SelectionOutline` counts if an entity has both.
+struct Marked;
+
+type MarkParts<'w> = (Option<&'w SelectionOutline>, Option<&'w XRayOutline>);
+
+impl Heritage for Marked {
+    type Own = AnyOf<(&'static SelectionOutline, &'static XRayOutline)>;
+    type Changed = Or<(Changed<SelectionOutline>, Changed<XRayOutline>)>;
+
+    fn passes_on((selected, hidden): &MarkParts) -> bool {
+        match (selected, hidden) {
+            (Some(selected), _) => selected.inherit,
+            (None, hidden) => hidden.is_some_and(|hidden| hidden.inherit),
         }
     }
-    let any = table.styles.any();
-    marks.set_if_neq(table);
-    if styles.marks != any {
-        styles.marks = any;
-    }
 }
 
-pub(super) fn extract_marks(
-    main: Extract<Res<Marks>>,
-    mut marks: ResMut<Marks>,
-    mut changed: ResMut<ChangedObjects>,
+/// The lines of an object with one of the components; `None` if they are not seen.
+fn lines((selected, hidden): MarkParts) -> Option<ObjectStyleUniform> {
+    let hidden = || hidden.map(|hidden| hidden.uniform());
+    let lines = selected.map(|selected| selected.uniform()).or_else(hidden);
+    lines.filter(|lines| lines.opacity > 0.0)
+}
+
+fn assign_marks(
+    mut marked: Inherited<Marked>,
+    (mut marks, mut styles): (ResMut<Marks>, ResMut<ObjectStyles>),
 ) {
-    if main.is_changed() {
-        changed.note(&marks.styles.slots, &main.styles.slots);
-        changed.note(&marks.roots, &main.roots);
-        marks.clone_from(&main);
+    let changed = marked.update();
+    if changed.is_empty() {
+        return;
     }
+    let marks = &mut *marks;
+    marks.roots.begin();
+    let changed = changed.into_iter().map(|mesh| {
+        let (root, lines) = marked
+            .of(mesh)
+            .map(|(root, parts)| (root, lines(parts)))
+            .unzip();
+        marks.roots.set(mesh, root);
+        (mesh, lines.flatten())
+    });
+    marks.styles.assign(changed);
+    styles.marks = marks.styles.any();
 }
 
 pub(super) fn build(app: &mut App) {
     app.register_type::<SelectionOutline>()
         .register_type::<XRayOutline>()
-        .init_resource::<Marks>()
-        .add_systems(
-            PostUpdate,
-            assign_marks.after(super::components::assign_object_styles),
-        );
+        .init_resource::<Marks>();
+    watch::<SelectionOutline>(app);
+    watch::<XRayOutline>(app);
+    app.add_systems(
+        PostUpdate,
+        assign_marks.after(super::components::assign_object_styles),
+    );
 }

@@ -44,15 +44,20 @@ mod pipeline;
 #[cfg(feature = "objects")]
 mod plugin;
 #[cfg(feature = "objects")]
+mod ranged;
+#[cfg(feature = "objects")]
 mod sections;
 #[cfg(feature = "objects")]
 mod shading;
+mod shared;
 #[cfg(feature = "objects")]
 mod simplification;
 mod table;
 #[cfg(feature = "objects")]
 mod transparent;
 mod widths;
+#[cfg(feature = "objects")]
+mod work;
 
 #[cfg(feature = "objects")]
 mod changes;
@@ -83,13 +88,13 @@ pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use object_ids::ObjectIds;
 #[cfg(feature = "objects")]
-pub use phase::ObjectWork;
-#[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
 pub use simplification::ObjectSimplification;
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
+#[cfg(feature = "objects")]
+pub use work::ObjectWork;
 
 pub(crate) use object_depths::{
     OBJECT_DEPTHS_BINDING, ObjectDepthRequest, ObjectDepths, ObjectEye, object_depths_entry,
@@ -253,11 +258,13 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<ObjectSimplification>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()
+                .init_resource::<simplification::Dials>()
                 .add_systems(
                     bevy::app::PostUpdate,
                     (
                         components::assign_object_styles,
                         line_widths::find_wide_meshes,
+                        simplification::assign_dials,
                     )
                         .chain()
                         .after(bevy::transform::TransformSystems::Propagate),
@@ -265,6 +272,12 @@ impl Plugin for ObjectsPlugin {
             inherit::build(app);
             backdrop::build(app);
             levels::build(app);
+            inherit::watch::<OutlineStyle>(app);
+            inherit::watch::<NoOutlines>(app);
+            inherit::watch::<NoStyle>(app);
+            inherit::watch::<PatternAnchor>(app);
+            inherit::watch::<ObjectSimplification>(app);
+            inherit::watch::<LineWidths>(app);
             depth_test::build(app);
             marks::build(app);
             groups::build(app);

@@ -9,6 +9,7 @@ use bevy::{
         system::ResMut,
     },
     log::warn_once,
+    platform::collections::HashMap,
 };
 
 /// The ids of objects in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535. A resource of the
@@ -40,8 +41,8 @@ pub struct ObjectIds {
     frame: u32,
     /// The last frame in which an object came into view.
     given: u32,
-    /// Whether objects ever had to share ids.
-    any_shared: bool,
+    /// The objects that have the id of another one, by their ids.
+    sharing: HashMap<u16, Vec<Entity>>,
 }
 
 /// Frames for which an id without an object is not given to another one.
@@ -65,6 +66,12 @@ impl ObjectIds {
     /// The id of an object; `None` if it has none.
     pub fn get(&self, object: Entity) -> Option<u16> {
         self.ids.get(&object).copied()
+    }
+
+    /// The id of an object, if it has it to itself.
+    pub(super) fn alone(&self, object: Entity) -> Option<u16> {
+        let id = self.get(object)?;
+        Some(id).filter(|id| !self.slots[usize::from(*id) - 1].shared)
     }
 
     /// The largest id that was given so far.
@@ -91,7 +98,7 @@ impl ObjectIds {
             .slots
             .iter()
             .zip(1..=u16::MAX)
-            .filter(|_| self.any_shared);
+            .filter(|_| !self.sharing.is_empty());
         slots.filter(|(slot, _)| slot.shared).map(|(_, id)| id)
     }
 
@@ -117,7 +124,11 @@ impl ObjectIds {
         slot.meshes -= 1;
         if slot.meshes == 0 {
             slot.freed = self.frame;
+            slot.shared = false;
             self.free.push_back((id, self.frame));
+            for object in self.sharing.remove(&id).into_iter().flatten() {
+                self.ids.remove(&object);
+            }
         }
         // Objects that leave and come back leave their places in the queue behind.
         if self.free.len() > 2 * self.slots.len() + 64 {
@@ -165,7 +176,9 @@ impl ObjectIds {
         warn_once!("more than 65535 objects are seen at once: some have no lines between them");
         let id = (object.index_u32() % u32::from(u16::MAX) + 1) as u16;
         self.slots[usize::from(id) - 1].shared = true;
-        self.any_shared = true;
+        // All meshes of the object get this id, also if another one becomes free.
+        self.sharing.entry(id).or_default().push(object);
+        self.ids.insert(object, id);
         self.given = self.frame;
         id
     }
@@ -226,8 +239,16 @@ mod tests {
         assert!(all.iter().all(|id| *id > 0));
         let alone = ids.of_objects().count();
         assert!(alone >= 65_535 - (70_000 - 65_535), "{alone}");
+        // The meshes of one object have the same id, also after others have become free.
+        let last = all[69_999];
+        let left = [all[5_000], all[5_001]];
+        for id in left {
+            ids.take(id);
+        }
+        assert_eq!(ids.give(object(69_999)), last);
+        ids.take(last);
         // A cut to as many others: none has to share.
-        for id in all {
+        for id in all.into_iter().filter(|id| !left.contains(id)) {
             ids.take(id);
         }
         for index in 100_000..165_535 {

@@ -28,7 +28,7 @@ pub(crate) struct ObjectIdItem {
     pub bin: Bin,
     /// The first mesh of the bin: the draw functions bind what it has.
     mesh: MainEntity,
-    instances: Range<u32>,
+    pub instances: Range<u32>,
     extra_index: PhaseItemExtraIndex,
 }
 
@@ -162,6 +162,8 @@ pub(crate) struct ObjectIdPhase {
     pub pending: MainEntityHashSet,
     /// Meshes that fade, see [`FadingMeshes`](super::levels::FadingMeshes).
     pub fading: MainEntityHashSet,
+    /// Meshes that the GPU leaves out.
+    pub out_of_range: MainEntityHashSet,
     /// Whether draw calls and buffers have yet to follow the bins.
     pub changed: bool,
     /// The draw calls of this frame.
@@ -170,7 +172,7 @@ pub(crate) struct ObjectIdPhase {
     /// Whether the view was drawn in this frame.
     pub live: bool,
     /// Meshes that were added so far.
-    added: usize,
+    pub added: usize,
 }
 
 impl ObjectIdPhase {
@@ -296,30 +298,6 @@ impl ObjectIdPhase {
 /// The bins of all views.
 #[derive(Resource, Default)]
 pub(crate) struct ObjectIdPhases(pub HashMap<RetainedViewEntity, ObjectIdPhase>);
-
-/// What the passes of object ids do in all views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ObjectWork {
-    /// Draw calls of a frame.
-    pub draw_calls: usize,
-    /// Meshes in these draw calls.
-    pub instances: usize,
-    /// Meshes that were added to them, in all frames so far.
-    pub queued: usize,
-}
-
-impl ObjectWork {
-    /// Reads it from the render world.
-    pub fn of(render_world: &World) -> Self {
-        let phases = render_world.get_resource::<ObjectIdPhases>();
-        let phases = phases.into_iter().flat_map(|phases| phases.0.values());
-        phases.fold(Self::default(), |sum, phase| Self {
-            draw_calls: sum.draw_calls + phase.items.len(),
-            instances: sum.instances + phase.items.iter().map(|i| i.instances.len()).sum::<usize>(),
-            queued: sum.queued + phase.added,
-        })
-    }
-}
 
 impl ObjectIdPhases {
     /// What the passes of a view bind.

@@ -13,25 +13,26 @@ use bevy::{
 };
 
 use super::{
-    backdrop::{Backdrops, extract_backdrops, remove_backdrops},
-    changes::{self, NoteChanges},
+    backdrop::{Backdrops, remove_backdrops},
+    changes::{self, NoteChanges, follow},
     depth_test::{self, count_ids},
     depths,
     draw::draw_object_ids,
-    groups::{ObjectGroups, extract_object_groups},
+    groups::ObjectGroups,
     ids::{prepare_object_ids, queue_object_ids},
     instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
     layer::prepare_layers,
-    levels::{Levels, extract_levels},
+    levels::Levels,
     lightmaps::{Lightmapped, extract_lightmapped},
-    line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
-    marks::{Marks, extract_marks},
+    line_widths::{WideMeshes, WidthViews, prepare_line_widths},
+    marks::Marks,
     object_ids::{ObjectIds, begin_frame},
     phase::{ObjectIdItem, ObjectIdPhases},
     pipeline::{MarkSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
-    sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
-    table::extract_object_styles,
+    ranged::{RangedMeshes, extract_ranged_meshes},
+    sections::{SectionBuffer, SectionStarts, extract_sections, prepare_sections},
+    table::ObjectStyles,
     update_mark_styles,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
@@ -48,11 +49,12 @@ pub(crate) fn build(app: &mut App) {
         .init_resource::<Levels>()
         .init_resource::<Backdrops>()
         .init_gpu_resource::<SectionBuffer>()
-        .init_resource::<SectionTables>()
+        .init_resource::<SectionStarts>()
         .init_gpu_resource::<ObjectIdPhases>()
         .init_gpu_resource::<ObjectIds>()
         .init_resource::<ObjectGroups>()
         .init_resource::<WideMeshes>()
+        .init_resource::<RangedMeshes>()
         .init_resource::<Lightmapped>()
         .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
@@ -74,14 +76,15 @@ fn add_systems(render_app: &mut SubApp) {
             ExtractSchedule,
             (
                 begin_frame,
-                extract_object_styles,
-                extract_object_groups,
+                follow::<ObjectStyles>,
+                follow::<ObjectGroups>,
+                follow::<Marks>,
+                follow::<WideMeshes>,
+                follow::<Levels>,
+                follow::<Backdrops>,
                 extract_sections,
-                extract_marks,
-                extract_levels,
-                extract_backdrops,
-                extract_wide_meshes,
                 extract_lightmapped,
+                extract_ranged_meshes,
             )
                 .in_set(NoteChanges),
         )

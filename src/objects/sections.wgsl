@@ -21,6 +21,20 @@ struct Drawn {
 #endif
 }
 
+// The section of a triangle. `start`: the first word of the mesh's sections, and from bit 24 on, for
+// meshes that share their id, 1 more than a number by which theirs are shifted, in a range of their
+// own from 128 to 254. 255 is no section.
+fn section(start: u32, triangle: u32) -> u32 {
+    let at = (start & 0xffffffu) + triangle / 4u;
+    let word = sections[min(at, arrayLength(&sections) - 1u)];
+    let number = (word >> (8u * (triangle % 4u))) & 255u;
+    let shift = start >> 24u;
+    if shift == 0u || number == 0u || number == 255u {
+        return number;
+    }
+    return 128u + (number + shift - 2u) % 127u;
+}
+
 @fragment
 fn object_id(
 #ifdef LINE_WIDTHS
@@ -42,8 +56,7 @@ fn object_id(
     }
 #endif
     let object = objects[min(instance, arrayLength(&objects) - 1u)];
-    let word = sections[min(object.z + triangle / 4u, arrayLength(&sections) - 1u)];
-    drawn.object = vec2(object.x, object.y | (((word >> (8u * (triangle % 4u))) & 255u) << 8u));
+    drawn.object = vec2(object.x, object.y | (section(object.z, triangle) << 8u));
 #ifdef LINE_WIDTHS
     var vertex_factor = 1.0;
 #ifdef VERTEX_WIDTHS

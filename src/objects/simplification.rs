@@ -1,18 +1,15 @@
 //! Objects that are simpler or more detailed than their distance makes them.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
-        reflect::ReflectComponent,
-        system::Query,
-    },
+    ecs::{component::Component, reflect::ReflectComponent, resource::Resource, system::ResMut},
     math::Vec2,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::inherit::inherit;
+use super::{
+    inherit::{Inherit, Inherited},
+    shared::Shared,
+};
 use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
 /// Makes this object simpler or more detailed than effects make it by distance: a hero with all
@@ -81,18 +78,27 @@ impl ObjectSimplification {
 /// The dial of an object without an [`ObjectSimplification`].
 pub(super) const BY_DISTANCE: Vec2 = Vec2::X;
 
-/// The dials of the meshes that have one of their own.
-pub(super) fn dials(
-    set: &Query<(Entity, &ObjectSimplification)>,
-    children: &Query<&Children>,
-) -> EntityHashMap<Vec2> {
-    let mut found = EntityHashMap::default();
-    for (entity, simplification) in set {
-        let own = |child| set.contains(child);
-        let said = (entity, simplification.dial());
-        inherit(&mut found, said, simplification.inherit, children, own);
+impl Inherit for ObjectSimplification {
+    fn is_inherited(&self) -> bool {
+        self.inherit
     }
-    found
+}
+
+/// The dials of the meshes that have one of their own.
+#[derive(Resource, Default)]
+pub(super) struct Dials(pub Shared<Vec2>);
+
+/// Keeps [`Dials`] up to date.
+pub(super) fn assign_dials(
+    mut simplified: Inherited<ObjectSimplification>,
+    mut dials: ResMut<Dials>,
+) {
+    let changed = simplified.update();
+    dials.0.begin();
+    for mesh in changed {
+        let dial = simplified.of(mesh).map(|(_, simplified)| simplified.dial());
+        dials.0.set(mesh, dial);
+    }
 }
 
 #[cfg(test)]

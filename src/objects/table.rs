@@ -1,7 +1,14 @@
 //! The table of outline styles that shaders read, and the slot of each object in it.
 
+use super::shared::Shared;
+#[cfg(feature = "objects")]
 use bevy::{
-    ecs::{entity::EntityHashMap, resource::Resource},
+    ecs::entity::{Entity, EntityHashMap},
+    platform::collections::HashMap,
+    render::sync_world::MainEntityHashSet,
+};
+use bevy::{
+    ecs::resource::Resource,
     math::{Vec3, Vec4},
     render::{
         render_resource::{Buffer, ShaderType, StorageBuffer},
@@ -48,12 +55,14 @@ impl Default for ObjectStyleUniform {
 pub(crate) const MOST_STYLES: usize = 255;
 
 /// The objects that are drawn in another way than the others. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
+#[derive(Resource, Default)]
 pub(crate) struct ObjectStyles {
     /// The table, by slot. Slot 0 is for objects without a style.
     pub entries: Vec<ObjectStyleUniform>,
     /// The slot of each object, by main-world entity.
-    pub slots: EntityHashMap<u8>,
+    pub slots: Shared<u8>,
+    #[cfg(feature = "objects")]
+    users: Users,
     /// Some mesh is divided into sections.
     pub sections: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
@@ -73,10 +82,10 @@ pub(crate) const HIDDEN_ONLY: u32 = 16;
 pub(crate) const UNSTYLED: u32 = 8;
 
 /// The transparent meshes that draw into the depth of effects. Both worlds have a copy.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
+#[derive(Resource, Default)]
 pub(crate) struct DepthWrites {
     /// The least alpha that is drawn, by main-world entity.
-    pub cutoffs: EntityHashMap<f32>,
+    pub cutoffs: Shared<f32>,
 }
 
 /// Which components of objects there are in a world.
@@ -126,39 +135,125 @@ impl ObjectStyles {
             .map(|e| 2.0 * e.half_width)
             .fold(0.0, f32::max)
     }
+}
 
-    /// The slot of a style, added to the table if it is new. Equal styles have the same
-    /// slot.
-    #[cfg(feature = "objects")]
-    pub fn slot(&mut self, style: ObjectStyleUniform) -> u8 {
+/// The objects that use the slots of a table. Only the main world knows them.
+#[cfg(feature = "objects")]
+#[derive(Default)]
+struct Users {
+    /// The number of objects of each slot.
+    counts: Vec<u32>,
+    /// The slot of each style.
+    known: HashMap<[u32; 15], u8>,
+    /// Objects that are drawn like those of the last slot, because no slot is free.
+    waiting: EntityHashMap<ObjectStyleUniform>,
+}
+
+#[cfg(feature = "objects")]
+impl ObjectStyles {
+    /// Gives objects another style; `None`: none. The slots of all other objects stay, except for
+    /// those that wait for one. Objects with a slot come before those without one, and then in the
+    /// order of entities.
+    pub fn assign(&mut self, new: impl Iterator<Item = (Entity, Option<ObjectStyleUniform>)>) {
+        self.slots.begin();
+        let mut wanting = Vec::new();
+        for (object, style) in new {
+            let slot = self.leave(object);
+            match style {
+                Some(style) => wanting.push((slot.is_none(), object, slot, style)),
+                None => {
+                    self.slots.set(object, None);
+                }
+            }
+        }
+        let waiting = std::mem::take(&mut self.users.waiting).into_iter();
+        wanting.extend(waiting.map(|(object, style)| (true, object, None, style)));
+        wanting.sort_unstable_by_key(|(is_new, object, ..)| (*is_new, *object));
+        for (_, object, before, style) in wanting {
+            let slot = self.enter(object, before, style);
+            self.slots.set(object, Some(slot));
+        }
+    }
+
+    /// Frees the slot of an object if it was its last one; returns it.
+    fn leave(&mut self, object: Entity) -> Option<u8> {
+        if self.users.waiting.remove(&object).is_some() {
+            return None;
+        }
+        let slot = *self.slots.get(object)?;
+        let at = usize::from(slot);
+        self.users.counts[at] -= 1;
+        if self.users.counts[at] == 0 {
+            let unused = std::mem::take(&mut self.entries[at]);
+            self.users.known.remove(&unused.bits());
+        }
+        Some(slot)
+    }
+
+    /// The slot of a style; that of `before` if it is new and that slot is free.
+    fn enter(&mut self, object: Entity, before: Option<u8>, style: ObjectStyleUniform) -> u8 {
         if self.entries.is_empty() {
             self.entries.push(ObjectStyleUniform::default());
+            self.users.counts.push(1);
         }
-        let known = self.entries.iter().skip(1).position(|e| *e == style);
-        let slot = known.map_or(self.entries.len(), |at| at + 1);
-        if slot > MOST_STYLES {
+        let Self { entries, users, .. } = self;
+        let is_free = |at: &usize| users.counts.get(*at).is_none_or(|count| *count == 0);
+        let known = users
+            .known
+            .get(&style.bits())
+            .map(|slot| usize::from(*slot));
+        let free = || {
+            let before = before.map(usize::from).filter(is_free);
+            before.or_else(|| (1..=MOST_STYLES).find(is_free))
+        };
+        let Some(at) = known.or_else(free) else {
             bevy::log::warn_once!(
                 "more than {MOST_STYLES} different outline styles: the others are drawn like the last"
             );
+            users.waiting.insert(object, style);
             return MOST_STYLES as u8;
+        };
+        if at == entries.len() {
+            entries.push(style);
+            users.counts.push(0);
         }
-        if known.is_none() {
-            self.entries.push(style);
-        }
-        slot as u8
+        entries[at] = style;
+        users.counts[at] += 1;
+        users.known.insert(style.bits(), at as u8);
+        at as u8
     }
 }
 
 #[cfg(feature = "objects")]
-pub(crate) fn extract_object_styles(
-    main: bevy::render::Extract<bevy::ecs::system::Res<ObjectStyles>>,
-    mut styles: bevy::ecs::system::ResMut<ObjectStyles>,
-    mut changed: bevy::ecs::system::ResMut<super::changes::ChangedObjects>,
-) {
-    use bevy::ecs::change_detection::DetectChanges;
-    if main.is_changed() {
-        changed.note(&styles.slots, &main.slots);
-        styles.clone_from(&main);
+impl ObjectStyleUniform {
+    /// All of it; equal for styles that are drawn alike.
+    fn bits(&self) -> [u32; 15] {
+        let [r, g, b] = self.color.to_array();
+        let [x, y, z] = self.anchor_centre.to_array();
+        let [i, j, k, w] = self.anchor_rotation.to_array();
+        let kinds = f32::from_bits(self.kinds);
+        let [color, half, opacity, size] = [
+            self.has_color,
+            self.half_width,
+            self.opacity,
+            self.anchor_size,
+        ];
+        let all = [
+            r, g, b, color, half, kinds, opacity, size, x, y, z, i, j, k, w,
+        ];
+        all.map(f32::to_bits)
+    }
+}
+
+#[cfg(feature = "objects")]
+impl super::changes::Follow for ObjectStyles {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.slots.follow(&main.slots, changed);
+        self.entries.clone_from(&main.entries);
+        self.sections = main.sections;
+        self.marks = main.marks;
+        self.widths = main.widths;
+        self.fades = main.fades;
     }
 }
 
@@ -178,5 +273,81 @@ impl ObjectStyleBuffer {
 
     pub fn buffer(&self) -> Option<&Buffer> {
         self.buffer.buffer()
+    }
+}
+
+#[cfg(all(test, feature = "objects"))]
+mod tests {
+    use super::*;
+
+    fn object(index: u32) -> Entity {
+        Entity::from_raw_u32(index).expect("an index")
+    }
+
+    fn style(number: u32) -> Option<ObjectStyleUniform> {
+        Some(ObjectStyleUniform {
+            half_width: number as f32,
+            ..Default::default()
+        })
+    }
+
+    /// After any changes, objects have the same slot if and only if they have the same style, and
+    /// the entry of the slot is that style; only objects that changed get another slot.
+    #[test]
+    fn slots_belong_to_styles() {
+        let mut styles = ObjectStyles::default();
+        let mut wanted = EntityHashMap::default();
+        let mut random = 1_u32;
+        for round in 0..2000 {
+            let mut changed = EntityHashMap::default();
+            for _ in 0..round % 5 {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let style = style(random >> 16 & 31).filter(|style| style.half_width > 3.0);
+                changed.insert(object(random >> 26), style);
+            }
+            wanted.extend(changed.clone());
+            let before = styles.slots.clone();
+            styles.assign(changed.clone().into_iter());
+            for (object, style) in &wanted {
+                let slot = styles.slots.get(*object);
+                let found = slot.map(|slot| styles.entries[usize::from(*slot)]);
+                assert_eq!(found, *style, "round {round}");
+            }
+            let mut others = wanted.keys().filter(|other| !changed.contains_key(*other));
+            assert!(others.all(|other| styles.slots.get(*other) == before.get(*other)));
+            assert!(styles.entries.len() <= 29 + 1, "{}", styles.entries.len());
+        }
+    }
+
+    /// An object whose style changes in every frame keeps its slot, also if others are free.
+    #[test]
+    fn a_style_that_changes_stays_in_its_slot() {
+        let mut styles = ObjectStyles::default();
+        styles.assign((0..9).map(|index| (object(index), style(index))));
+        let slot = styles.slots.get(object(7)).copied();
+        styles.assign([(object(3), None), (object(7), style(10))].into_iter());
+        assert_eq!(styles.slots.get(object(7)).copied(), slot);
+    }
+
+    /// A slot that becomes free goes to the first object that waits.
+    #[test]
+    fn a_full_table_changes_only_where_a_slot_becomes_free() {
+        let mut styles = ObjectStyles::default();
+        styles.assign((0..300).map(|index| (object(index), style(index))));
+        let waiting = |styles: &ObjectStyles| {
+            let mut waiting: Vec<Entity> = styles.users.waiting.keys().copied().collect();
+            waiting.sort_unstable();
+            waiting
+        };
+        let mut all: Vec<Entity> = (0..300).map(object).collect();
+        all.sort_unstable();
+        assert_eq!(waiting(&styles), all[255..]);
+        let before = styles.slots.clone();
+        styles.assign([(all[7], style(1000))].into_iter());
+        assert_eq!(styles.slots.values(), before.values());
+        assert_eq!(waiting(&styles), all[255..]);
+        styles.assign([(all[9], None)].into_iter());
+        assert_eq!(waiting(&styles), all[256..]);
+        assert_eq!(styles.slots.get(all[255]), before.get(all[9]));
     }
 }

@@ -190,3 +190,23 @@ fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
     assert!(joins > 20, "{joins}");
     assert_eq!(small.errors(), 0);
 }
+
+/// The buffers of lines follow the picture: they become larger with it, and smaller too.
+#[test]
+fn buffers_shrink_with_the_picture() {
+    let mut small = Small::new(UVec2::new(256, 128), Msaa::Off);
+    small.insert(Outlines::default());
+    for size in [
+        UVec2::new(256, 128),
+        UVec2::new(96, 64),
+        UVec2::new(256, 128),
+    ] {
+        small.headless.resize(size, 1.0);
+        let target = small.headless.render_target();
+        small.insert(target);
+        small.settle();
+        let room = small.cracks().expect("lines").words.len();
+        assert_eq!(room, (size.x * size.y) as usize, "{size}");
+    }
+    assert_eq!(small.errors(), 0);
+}

@@ -2,13 +2,13 @@
 //! them; and the work that a frame does for them.
 
 use bevy::{
-    camera::visibility::NoCpuCulling,
+    camera::visibility::{NoCpuCulling, VisibilityRange},
     math::{Affine3A, Vec3A},
     render::{
         batching::NoAutomaticBatching, occlusion_culling::OcclusionCulling, view::NoIndirectDrawing,
     },
 };
-use bevy_comics::testing::ObjectWork;
+use bevy_comics::{objects::ObjectSimplification, testing::ObjectWork};
 
 use crate::prelude::*;
 
@@ -206,4 +206,60 @@ fn a_frame_does_what_has_changed() {
         before.queued + 2,
         "the cubes that changed"
     );
+}
+
+/// What is uploaded for objects is what has changed of them.
+#[test]
+fn a_frame_uploads_what_has_changed() {
+    let mut small = Small::new(UVec2::splat(SIDE), Msaa::Off);
+    small.clear();
+    let cubes = put_cubes(&mut small, 200, |_, _| {});
+    let at = Transform::from_xyz(0.0, 0.0, 60.0);
+    small.insert((at, Outlines::default(), Abstraction::default()));
+    small.on(cubes[0].entity).insert(NoOutlines::default());
+    small.settle();
+    small.headless.step(3);
+    let mut before = work(&small);
+    let mut step = |small: &mut Small, case: &str, bytes: usize| {
+        small.headless.step(1);
+        let now = work(small);
+        assert_eq!(now.uploaded - before.uploaded, bytes, "{case}");
+        before = now;
+    };
+    step(&mut small, "nothing changed", 0);
+    // The record of an instance has four words, a box has twelve.
+    small.on(cubes[9].entity).insert(NoOutlines::default());
+    step(&mut small, "one has another style", 16);
+    small
+        .on(cubes[9].entity)
+        .insert(Transform::from_xyz(0.0, 9.0, 9.0));
+    step(&mut small, "one moved", 48);
+    small
+        .on(cubes[9].entity)
+        .insert(ObjectSimplification::fixed(0.5));
+    step(&mut small, "one is simplified", 48);
+    small.on(cubes[9].entity).insert(OutlineGroup);
+    step(&mut small, "one is a group of its own", 0);
+}
+
+/// The levels of detail of an object are in one place, and the GPU draws the one that is in range.
+#[test]
+fn ids_leave_out_the_levels_that_are_out_of_range() {
+    let mut small = Small::new(UVec2::splat(SIDE), Msaa::Off);
+    small.clear();
+    let ranges = [(0.0, 10.0), (10.0, 20.0), (20.0, 1000.0)];
+    let levels = put_cubes(&mut small, 3, |at, level| {
+        let (start, end) = ranges[at];
+        let range = VisibilityRange::abrupt(start, end);
+        level.insert((range, NoCpuCulling, Transform::default()));
+    });
+    small.insert(Outlines::default());
+    for (distance, level) in [(5.0, 0), (15.0, 1), (25.0, 2), (15.0, 1), (5.0, 0)] {
+        small.insert(Transform::from_xyz(0.0, 0.0, distance));
+        small.settle();
+        let ids: HashSet<u32> = small.ids().iter().copied().collect();
+        let wanted = HashSet::from([0, small.id_of(levels[level].entity)]);
+        assert_eq!(ids, wanted, "at {distance}");
+    }
+    assert_eq!(small.errors(), 0);
 }

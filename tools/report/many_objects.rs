@@ -7,12 +7,23 @@ use std::time::Instant;
 
 use bevy::{
     camera::RenderTarget,
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    core_pipeline::{
+        prepass::{DepthPrepass, NormalPrepass, Opaque3dPrepass, ViewPrepassTextures},
+        schedule::{Core3d, Core3dSystems},
+    },
     prelude::*,
-    render::{Render, RenderApp, RenderSystems},
+    render::{
+        Render, RenderApp, RenderSystems,
+        extract_component::{ExtractComponent, ExtractComponentPlugin},
+        render_phase::ViewBinnedRenderPhases,
+        render_resource::{RenderPassDescriptor, StoreOp},
+        renderer::{RenderContext, ViewQuery},
+        view::{ExtractedView, ViewDepthTexture},
+    },
 };
 use bevy_comics::{
-    ComicStyle, ComicsPlugin, ToonScene, lines::Outlines, objects::NoOutlines, toon::ToonMaterial,
+    ComicStyle, ComicsPlugin, ToonScene, lines::Outlines, objects::NoOutlines, testing::ObjectWork,
+    toon::ToonMaterial,
 };
 use bevy_comics_testkit::{
     bench,
@@ -30,6 +41,8 @@ enum Variant {
     Idle,
     /// The engine's depth and normal prepass alone.
     Prepasses,
+    /// The same, and its meshes drawn once more: the least that a pass of object ids can cost.
+    Floor,
     /// Default outlines.
     Outlines,
     /// Outlines without lines between objects, so without object ids.
@@ -42,8 +55,10 @@ enum Variant {
     Turning,
     /// Default outlines; the objects have a thousand meshes.
     Meshes,
-    /// Default outlines in eight cameras.
+    /// Default outlines in eight cameras, and in fifty; fifty cameras without a style.
     Cameras,
+    ManyCameras,
+    IdleCameras,
     /// No object is in view; without the plugin, and with it.
     UnseenWithoutPlugin,
     UnseenIdle,
@@ -54,10 +69,11 @@ enum Variant {
 }
 
 impl Variant {
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 17] = [
         Self::WithoutPlugin,
         Self::Idle,
         Self::Prepasses,
+        Self::Floor,
         Self::WithoutIds,
         Self::Outlines,
         Self::NoOutlines,
@@ -65,6 +81,8 @@ impl Variant {
         Self::Turning,
         Self::Meshes,
         Self::Cameras,
+        Self::ManyCameras,
+        Self::IdleCameras,
         Self::UnseenWithoutPlugin,
         Self::UnseenIdle,
         Self::EmptyScene,
@@ -76,6 +94,7 @@ impl Variant {
             Self::WithoutPlugin => "without the plugin",
             Self::Idle => "idle plugin",
             Self::Prepasses => "depth and normal prepass",
+            Self::Floor => "depth and normal prepass; drawn twice",
             Self::WithoutIds => "outlines without object edges",
             Self::Outlines => "outlines",
             Self::NoOutlines => "outlines; one object without",
@@ -83,6 +102,8 @@ impl Variant {
             Self::Turning => "outlines; the camera turns",
             Self::Meshes => "outlines; 1000 meshes",
             Self::Cameras => "outlines; 8 cameras",
+            Self::ManyCameras => "outlines; 50 cameras",
+            Self::IdleCameras => "idle plugin; 50 cameras",
             Self::UnseenWithoutPlugin => "without the plugin; none in view",
             Self::UnseenIdle => "idle plugin; none in view",
             Self::EmptyScene => "idle; an empty toon scene",
@@ -100,7 +121,16 @@ impl Variant {
                 | Self::Turning
                 | Self::Meshes
                 | Self::Cameras
+                | Self::ManyCameras
         )
+    }
+
+    fn cameras(self) -> usize {
+        match self {
+            Self::Cameras => 8,
+            Self::ManyCameras | Self::IdleCameras => 50,
+            _ => 1,
+        }
     }
 
     fn has_plugin(self) -> bool {
@@ -120,17 +150,53 @@ fn mark(stage: usize) -> impl FnMut(ResMut<Stages>) {
     move |mut stages| stages.0[stage] = Instant::now()
 }
 
+/// On a camera whose prepass is drawn twice.
+#[derive(Component, Clone, ExtractComponent)]
+struct DrawnTwice;
+
+/// Draws the meshes of the prepass again, over their depth.
+fn draw_again(
+    world: &World,
+    view: ViewQuery<(&ExtractedView, &ViewDepthTexture, &ViewPrepassTextures), With<DrawnTwice>>,
+    phases: Res<ViewBinnedRenderPhases<Opaque3dPrepass>>,
+    mut ctx: RenderContext,
+) {
+    let entity = view.entity();
+    let (view, depth, textures) = view.into_inner();
+    let (Some(phase), Some(normals)) = (
+        phases.get(&view.retained_view_entity),
+        textures.normal.as_ref(),
+    ) else {
+        return;
+    };
+    let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+        color_attachments: &[Some(normals.get_attachment()), None, None, None],
+        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+        ..default()
+    });
+    if let Err(error) = phase.render(&mut pass, world, entity) {
+        warn_once!("{error:?}");
+    }
+}
+
 /// Notes when the stages of a frame end.
 struct StagesPlugin;
 
 impl Plugin for StagesPlugin {
     fn build(&self, app: &mut App) {
         use RenderSystems::{PhaseSort, PrepareBindGroups, PrepareResourcesFlush, Queue};
+        app.add_plugins(ExtractComponentPlugin::<DrawnTwice>::default());
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
         render_app
             .insert_resource(Stages([Instant::now(); STAGES.len()]))
+            .add_systems(
+                Core3d,
+                draw_again
+                    .after(Core3dSystems::Prepass)
+                    .before(Core3dSystems::MainPass),
+            )
             .add_systems(
                 Render,
                 (
@@ -202,10 +268,8 @@ impl Crowd {
         let ahead = if unseen { Vec3::Z } else { Vec3::NEG_Z };
         let at = Transform::from_xyz(0.0, 0.0, 4.0 * side).looking_to(ahead, Vec3::Y);
         let mut targets = vec![target];
-        if variant == Variant::Cameras {
-            let new = |_| new_target(world, options.size, options.format).into();
-            targets.extend((1..8).map(new));
-        }
+        let new = |_| new_target(world, options.size, options.format).into();
+        targets.extend((1..variant.cameras()).map(new));
         let camera = |target: RenderTarget| (Camera3d::default(), target, Msaa::Off, at);
         let cameras = targets
             .into_iter()
@@ -237,10 +301,13 @@ impl Crowd {
             world.flush();
         }
         match self.variant {
-            Variant::Prepasses => {
+            Variant::Prepasses | Variant::Floor => {
                 world
                     .entity_mut(cameras[0])
                     .insert((DepthPrepass, NormalPrepass));
+                if self.variant == Variant::Floor {
+                    world.entity_mut(cameras[0]).insert(DrawnTwice);
+                }
             }
             Variant::NoOutlines => {
                 world.entity_mut(cubes[0]).insert(NoOutlines::default());
@@ -294,6 +361,10 @@ impl Crowd {
         (whole, stages)
     }
 
+    fn work(&self) -> ObjectWork {
+        ObjectWork::of(self.headless.app.sub_app(RenderApp).world())
+    }
+
     fn materials(&self) -> usize {
         let world = self.headless.app.world();
         world
@@ -304,7 +375,8 @@ impl Crowd {
 
 pub fn measure(run: &Run) -> Result<(), String> {
     let header = [
-        &["objects", "variant", "round", "toon_materials", "whole"][..],
+        &["objects", "variant", "round", "toon_materials"][..],
+        &["id_draws", "uploaded_bytes", "whole"],
         &STAGES,
     ]
     .concat();
@@ -321,14 +393,15 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let variants = run.some(6, variants.into_iter().chain(again));
     for &count in counts {
         for &(variant, again) in &variants {
-            // A frame of eight cameras takes eight times as long.
-            if variant == Variant::Cameras && count > 10_000 {
+            // A frame of many cameras takes many times as long.
+            if variant.cameras() > 1 && count * variant.cameras() > 80_000 {
                 continue;
             }
             let mut crowd = Crowd::new(variant, count);
             // Pipelines compile, and textures and buffers get their size.
             crowd.headless.step(4);
             for round in 0..run.rounds.min(3) {
+                let before = crowd.work().uploaded;
                 let mut all: Vec<_> = (0..frames).map(|frame| crowd.frame(frame)).collect();
                 all.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let (whole, stages) = all[all.len() / 2];
@@ -342,12 +415,29 @@ pub fn measure(run: &Run) -> Result<(), String> {
                     name.to_owned()
                 };
                 let materials = crowd.materials();
+                let ObjectWork {
+                    draw_calls,
+                    uploaded,
+                    ..
+                } = crowd.work();
+                let uploaded = (uploaded - before) / frames;
                 table.push(&[
-                    &count, &name, &round, &materials, &whole, update, queue, batch, bind, encode,
+                    &count,
+                    &name,
+                    &round,
+                    &materials,
+                    &draw_calls,
+                    &uploaded,
+                    &whole,
+                    update,
+                    queue,
+                    batch,
+                    bind,
+                    encode,
                 ]);
                 if round == 0 {
                     run.say(&format!(
-                        "{count} objects, {name}: {whole} ms, {ms:?}, {materials}"
+                        "{count} objects, {name}: {whole} ms, {ms:?}, {materials} materials, {draw_calls} draws of ids, {uploaded} B"
                     ));
                 }
             }

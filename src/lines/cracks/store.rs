@@ -92,7 +92,7 @@ pub(crate) struct CrackBuffers {
 }
 
 impl CrackBuffers {
-    /// Buffers for a rectangle; those of `before` are used again if they are large enough.
+    /// Buffers for a rectangle; those of `before` are used again if they fit.
     pub fn new(before: Option<Self>, device: &RenderDevice, rect: UVec4, bends: bool) -> Self {
         let words = words(rect);
         let pixels = u64::from(rect.z) * u64::from(rect.w);
@@ -102,8 +102,9 @@ impl CrackBuffers {
         let before = before.map(|b| (Some(b.words), Some(b.planes), b.bends));
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let take = |size: u64, label, old: Option<Buffer>| {
-            old.filter(|old| old.size() >= size)
-                .unwrap_or_else(|| gpu::buffer(device, label, size.max(16), usage))
+            let size = size.max(16);
+            old.filter(|old| gpu::is_reused(old.size(), size))
+                .unwrap_or_else(|| gpu::buffer(device, label, size, usage))
         };
         let (old_words, old_planes, old_bends) = before.unwrap_or_default();
         let old_planes = old_planes.map_or([None, None], |planes| planes.map(Some));

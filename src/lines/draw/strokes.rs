@@ -9,7 +9,7 @@ use bevy::{
     },
 };
 
-use crate::gpu::{buffer, entry};
+use crate::gpu::{buffer, entry, is_reused};
 
 /// Bytes of the arguments of the indirect draw and the number of ends, and of a stroke.
 const ARGUMENTS: u64 = 32;
@@ -24,7 +24,7 @@ pub(crate) struct StrokeList {
 }
 
 impl StrokeList {
-    /// An empty list for a grid; the buffer of `before` is used again if it is large enough.
+    /// An empty list for a grid; the buffer of `before` is used again if it fits.
     pub fn new(
         before: Option<Self>,
         (device, queue): (&RenderDevice, &RenderQueue),
@@ -33,7 +33,7 @@ impl StrokeList {
         let pixels = u64::from(rect.z) * u64::from(rect.w);
         let size = ARGUMENTS + STROKE * pixels.div_ceil(PIXELS).max(1);
         let list = before
-            .filter(|list| list.buffer.size() >= size)
+            .filter(|list| is_reused(list.buffer.size(), size))
             .unwrap_or_else(|| {
                 let drawn = BufferUsages::VERTEX | BufferUsages::INDIRECT;
                 let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | drawn;

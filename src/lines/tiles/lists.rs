@@ -17,7 +17,7 @@ use bevy::{
 };
 
 use crate::{
-    gpu::{buffer, entry},
+    gpu::{buffer, entry, is_reused},
     lines::request::LineRequest,
 };
 
@@ -68,8 +68,7 @@ fn most_tiles(request: &LineRequest) -> UVec2 {
 }
 
 impl TileLists {
-    /// Empty lists for this request; the buffers of `before` are used again if they are
-    /// large enough.
+    /// Empty lists for this request; the buffers of `before` are used again if they fit.
     pub fn new(
         before: Option<Self>,
         (device, queue): (&RenderDevice, &RenderQueue),
@@ -78,7 +77,7 @@ impl TileLists {
         let tiles = most_tiles(request);
         let room = tiles.x * tiles.y;
         let lists = before
-            .filter(|lists| lists.room >= room)
+            .filter(|lists| is_reused(u64::from(lists.room), u64::from(room)))
             .unwrap_or_else(|| {
                 let buffer =
                     |label, size, usage| buffer(device, label, size, usage | BufferUsages::STORAGE);

@@ -3,7 +3,7 @@
 use bevy::{
     app::TaskPoolPlugin,
     asset::{AssetApp, AssetPlugin, AssetServer, Handle},
-    ecs::world::World,
+    ecs::{entity::EntityHashMap, world::World},
     mesh::Mesh,
 };
 
@@ -135,7 +135,7 @@ fn updates_agree_with_a_scan() {
         for (mesh, object) in &wanted {
             assert_eq!(groups.object(*mesh), *object, "round {round}, {mesh}");
         }
-        let kept = groups.roots.keys().chain(groups.primitives.keys());
+        let kept = (groups.roots.values().keys()).chain(groups.primitives.values().keys());
         assert!(
             kept.into_iter().all(|mesh| wanted.contains_key(mesh)),
             "round {round}"

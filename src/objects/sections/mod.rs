@@ -9,8 +9,8 @@ use bevy::{
     ecs::{
         change_detection::DetectChanges,
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
+        entity::{Entity, EntityHashSet},
+        lifecycle::RemovedComponents,
         message::MessageReader,
         query::Changed,
         reflect::ReflectComponent,
@@ -20,10 +20,7 @@ use bevy::{
     },
     log::{warn, warn_once},
     mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexFormat},
-    platform::{
-        collections::{HashMap, HashSet},
-        sync::Arc,
-    },
+    platform::collections::{HashMap, HashSet},
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{RenderApp, renderer::RenderDevice, settings::WgpuFeatures},
     tasks::{AsyncComputeTaskPool, Task, block_on, futures_lite::future},
@@ -33,12 +30,14 @@ use self::divide::Surface;
 use super::{
     components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
-    inherit::{Inherited, inherit},
+    inherit::{Inherit, Inherited, watch},
     table::ObjectStyles,
 };
 use crate::settings::{FieldRange, clamp_or_default};
 
-pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_sections};
+pub(crate) use table::{
+    SectionBuffer, SectionStarts, SectionTables, extract_sections, prepare_sections,
+};
 
 /// Divides the meshes of this entity and of its descendants into sections: parts that bend
 /// nowhere as sharply as `angle`. Where two sections of an object meet, there is a crease.
@@ -120,7 +119,7 @@ impl SectionKey {
 }
 
 /// The sections of a mesh, one byte a triangle.
-type Numbers = Arc<[u8]>;
+type Numbers = Vec<u8>;
 
 /// Meshes whose sections are not known yet.
 #[derive(Resource, Default)]
@@ -140,35 +139,40 @@ pub(crate) type EntitySections = (SectionKey, Option<u8>);
 /// What says which mesh has which sections.
 #[derive(SystemParam)]
 pub(super) struct Divided<'w, 's> {
-    roots: Query<'w, 's, (Entity, &'static MeshSections)>,
-    children: Query<'w, 's, &'static Children>,
+    sections: Inherited<'w, 's, MeshSections>,
     meshes: Query<'w, 's, &'static Mesh3d>,
     groups: Res<'w, ObjectGroups>,
-    changed: Inherited<'w, 's, MeshSections>,
-    other_mesh: Query<'w, 's, (), Changed<Mesh3d>>,
+    other_mesh: Query<'w, 's, Entity, Changed<Mesh3d>>,
+    removed: RemovedComponents<'w, 's, Mesh3d>,
+}
+
+impl Inherit for MeshSections {
+    fn is_inherited(&self) -> bool {
+        true
+    }
 }
 
 impl Divided<'_, '_> {
-    fn is_changed(&mut self) -> bool {
-        let changed = self.changed.is_changed() || self.groups.is_changed();
-        changed || !self.other_mesh.is_empty()
+    /// The entities whose sections may have changed. `used`: some entity has sections.
+    fn update(&mut self, used: bool) -> EntityHashSet {
+        let mut changed = self.sections.update();
+        let without_mesh = self.removed.read();
+        if used || !changed.is_empty() {
+            changed.extend(self.other_mesh.iter().chain(without_mesh));
+            if self.groups.is_changed() {
+                changed.extend(self.groups.changed());
+            }
+        }
+        changed
     }
 
-    fn keys(&self) -> EntityHashMap<EntitySections> {
-        let mut sections: EntityHashMap<MeshSections> = EntityHashMap::default();
-        for (entity, own) in &self.roots {
-            let has_own = |child| self.roots.contains(child);
-            let said = (entity, own.sanitized());
-            inherit(&mut sections, said, true, &self.children, has_own);
-        }
-        let key = |(entity, sections): (&Entity, &MeshSections)| {
-            let mesh = self.meshes.get(*entity).ok()?;
-            let shared = self.groups.is_shared(*entity);
-            // Two meshes of a group rarely have the same numbers.
-            let shift = shared.then(|| (entity.index_u32() % u32::from(divide::NUMBERS)) as u8);
-            Some((*entity, (SectionKey::new(mesh, *sections), shift)))
-        };
-        sections.iter().filter_map(key).collect()
+    fn of(&self, entity: Entity) -> Option<EntitySections> {
+        let (_, sections) = self.sections.of(entity)?;
+        let mesh = self.meshes.get(entity).ok()?;
+        let shared = self.groups.is_shared(entity);
+        // Two meshes of a group rarely have the same numbers.
+        let shift = shared.then(|| (entity.index_u32() % u32::from(divide::NUMBERS)) as u8);
+        Some((SectionKey::new(mesh, sections.sanitized()), shift))
     }
 }
 
@@ -181,7 +185,8 @@ pub(super) fn divide_meshes(
     mut tables: ResMut<SectionTables>,
     mut styles: ResMut<ObjectStyles>,
 ) {
-    if divided.roots.is_empty() && tables.is_unused() {
+    let changed = divided.update(!tables.is_unused());
+    if changed.is_empty() && tables.is_unused() {
         events.clear();
         return;
     }
@@ -191,44 +196,38 @@ pub(super) fn divide_meshes(
         );
         return;
     }
+    tables.begin();
     for event in events.read() {
         if let AssetEvent::Added { id } | AssetEvent::Modified { id } = event {
             for key in tables.keys_of(*id) {
-                tables.numbers.remove(&key);
-                tasks.running.remove(&key);
-                tasks.failed.remove(&key);
+                tables.forget(key);
+                tasks.forget(key);
                 tasks.waiting.insert(key);
             }
         }
     }
-    if divided.is_changed() {
-        let keys = divided.keys();
-        if !tables.has(&keys) {
-            tables.assign(keys);
-            tasks.keep(&tables);
+    for entity in changed {
+        let [unused, new] = tables.assign(entity, divided.of(entity));
+        if let Some(key) = unused {
+            tasks.forget(key);
         }
+        tasks.waiting.extend(new);
     }
     tasks.start(&meshes);
     for (key, numbers) in tasks.finished() {
-        tables.numbers.insert(key, numbers);
+        tables.add(key, &numbers);
     }
+    tables.pack();
     if styles.sections != tables.any() {
         styles.sections = tables.any();
     }
 }
 
 impl SectionTasks {
-    /// Forgets meshes that no entity has any more, and notes the new ones.
-    fn keep(&mut self, tables: &SectionTables) {
-        let used = tables.used();
-        self.running.retain(|key, _| used.contains(key));
-        self.failed.retain(|key| used.contains(key));
-        let is_new = |key: &SectionKey| {
-            !tables.numbers.contains_key(key)
-                && !self.running.contains_key(key)
-                && !self.failed.contains(key)
-        };
-        self.waiting = used.into_iter().filter(is_new).collect();
+    fn forget(&mut self, key: SectionKey) {
+        self.waiting.remove(&key);
+        self.running.remove(&key);
+        self.failed.remove(&key);
     }
 
     /// Begins to divide the meshes that are loaded.
@@ -242,7 +241,7 @@ impl SectionTasks {
             match Surface::new(mesh) {
                 Ok(Some(surface)) => {
                     let angle = key.angle();
-                    let divide = async move { Numbers::from(surface.divide(angle)) };
+                    let divide = async move { surface.divide(angle) };
                     running.insert(*key, AsyncComputeTaskPool::get().spawn(divide));
                 }
                 // No triangles: no sections.
@@ -278,15 +277,16 @@ impl SectionTasks {
 pub(super) fn build(app: &mut App) {
     app.register_type::<MeshSections>()
         .init_resource::<SectionTasks>()
-        .init_resource::<SectionTables>()
-        .add_systems(
-            PostUpdate,
-            divide_meshes
-                .after(AssetEventSystems)
-                .after(assign_object_styles)
-                .after(update_object_groups)
-                .run_if(resource_exists::<Assets<Mesh>>),
-        );
+        .init_resource::<SectionTables>();
+    watch::<MeshSections>(app);
+    app.add_systems(
+        PostUpdate,
+        divide_meshes
+            .after(AssetEventSystems)
+            .after(assign_object_styles)
+            .after(update_object_groups)
+            .run_if(resource_exists::<Assets<Mesh>>),
+    );
 }
 
 /// Notes what the device supports.

@@ -1,153 +1,301 @@
 //! The sections of all meshes, as the pass that draws ids reads them.
 
+use std::ops::Range;
+
 use bevy::{
     asset::AssetId,
     ecs::{
-        change_detection::DetectChanges,
-        entity::{Entity, EntityHashMap},
+        entity::{Entity, EntityHashMap, EntityHashSet},
         resource::Resource,
         system::{Res, ResMut},
     },
     mesh::Mesh,
-    platform::collections::{HashMap, HashSet},
+    platform::collections::HashMap,
     render::{
         Extract,
-        render_resource::{Buffer, StorageBuffer},
+        render_resource::Buffer,
         renderer::{RenderDevice, RenderQueue},
-        sync_world::MainEntity,
     },
 };
 
 use super::{
-    super::changes::ChangedObjects,
-    EntitySections, Numbers, SectionKey,
-    divide::{NUMBERS, SILENT},
+    super::{changes::ChangedObjects, shared::Shared},
+    EntitySections, SectionKey,
 };
+use crate::gpu::Table;
 
-/// The sections of meshes. Both worlds have a copy.
-#[derive(Resource, Clone, Default)]
+/// The sections of meshes. A resource of the main world.
+#[derive(Resource, Default)]
 pub(crate) struct SectionTables {
-    pub(super) numbers: HashMap<SectionKey, Numbers>,
     entities: EntityHashMap<EntitySections>,
+    divisions: HashMap<SectionKey, Division>,
+    /// The sections of all meshes, four triangles to a word. New ones are added at the end. The
+    /// first word belongs to no mesh.
+    words: Vec<u32>,
+    /// The number of words that no mesh uses any more.
+    unused: usize,
+    /// How often all words were packed anew.
+    packings: u32,
+    starts: Shared<u32>,
+}
+
+/// A mesh that is divided, or will be.
+#[derive(Default)]
+struct Division {
+    /// The entities with the mesh.
+    entities: EntityHashSet,
+    /// Its words, when they are known.
+    words: Option<Range<usize>>,
 }
 
 impl SectionTables {
     /// Whether any mesh has sections.
     pub fn any(&self) -> bool {
-        !self.numbers.is_empty() && !self.entities.is_empty()
+        !self.starts.is_empty()
     }
 
     pub(super) fn is_unused(&self) -> bool {
         self.entities.is_empty()
     }
 
-    pub(super) fn has(&self, entities: &EntityHashMap<EntitySections>) -> bool {
-        self.entities == *entities
+    /// Begins the changes of a frame.
+    pub(super) fn begin(&mut self) {
+        self.starts.begin();
     }
 
-    /// Also forgets the sections that no entity has any more.
-    pub(super) fn assign(&mut self, entities: EntityHashMap<EntitySections>) {
-        self.entities = entities;
-        let used = self.used();
-        self.numbers.retain(|key, _| used.contains(key));
+    /// Sets which sections an entity has. Returns a key that no entity has any more, and one that
+    /// no entity had.
+    pub(super) fn assign(
+        &mut self,
+        entity: Entity,
+        new: Option<EntitySections>,
+    ) -> [Option<SectionKey>; 2] {
+        let old = match new {
+            Some(new) => self.entities.insert(entity, new),
+            None => self.entities.remove(&entity),
+        };
+        let mut keys = [None; 2];
+        if let Some((key, _)) = new {
+            let division = self.divisions.entry(key).or_insert_with(|| {
+                keys[1] = Some(key);
+                Division::default()
+            });
+            division.entities.insert(entity);
+        }
+        if let Some((key, _)) = old.filter(|old| new.is_none_or(|new| new.0 != old.0))
+            && let Some(division) = self.divisions.get_mut(&key)
+        {
+            division.entities.remove(&entity);
+            if division.entities.is_empty() {
+                self.forget(key);
+                self.divisions.remove(&key);
+                keys[0] = Some(key);
+            }
+        }
+        self.set_start(entity);
+        keys
     }
 
-    pub(super) fn used(&self) -> HashSet<SectionKey> {
-        self.entities.values().map(|(key, _)| *key).collect()
+    /// Removes the sections of a mesh.
+    pub(super) fn forget(&mut self, key: SectionKey) {
+        let Some(division) = self.divisions.get_mut(&key) else {
+            return;
+        };
+        self.unused += division.words.take().map_or(0, |words| words.len());
+        for entity in division.entities.clone() {
+            self.set_start(entity);
+        }
+    }
+
+    /// Adds the sections of a mesh, one byte a triangle.
+    pub(super) fn add(&mut self, key: SectionKey, numbers: &[u8]) {
+        self.forget(key);
+        let Some(division) = self.divisions.get_mut(&key) else {
+            return;
+        };
+        if self.words.is_empty() {
+            self.words.push(0);
+        }
+        let start = self.words.len();
+        self.words.extend(numbers.chunks(4).map(word));
+        division.words = Some(start..self.words.len());
+        for entity in division.entities.clone() {
+            self.set_start(entity);
+        }
+    }
+
+    /// Packs the words anew if most of them are unused.
+    pub(super) fn pack(&mut self) {
+        if self.unused <= self.words.len() / 2 {
+            return;
+        }
+        let mut packed = vec![0];
+        for words in self.divisions.values_mut().filter_map(|d| d.words.as_mut()) {
+            let start = packed.len();
+            packed.extend_from_slice(&self.words[words.clone()]);
+            *words = start..packed.len();
+        }
+        self.words = packed;
+        self.unused = 0;
+        self.packings = self.packings.wrapping_add(1);
+        let entities: Vec<Entity> = self.entities.keys().copied().collect();
+        for entity in entities {
+            self.set_start(entity);
+        }
+    }
+
+    fn set_start(&mut self, entity: Entity) {
+        let start = self.entities.get(&entity).and_then(|(key, shift)| {
+            let words = self.divisions.get(key)?.words.as_ref()?;
+            let shift = shift.map_or(0, |shift| u32::from(shift) + 1);
+            // Beyond 64 million triangles, meshes have no sections.
+            (words.end < 1 << 24).then_some(words.start as u32 | shift << 24)
+        });
+        self.starts.set(entity, start);
     }
 
     /// The keys with this mesh.
     pub(super) fn keys_of(&self, mesh: AssetId<Mesh>) -> Vec<SectionKey> {
-        let keys = self.entities.values().map(|(key, _)| *key);
-        let found: HashSet<SectionKey> = keys.filter(|key| key.mesh == mesh).collect();
-        found.into_iter().collect()
+        let keys = self.divisions.keys().copied();
+        keys.filter(|key| key.mesh == mesh).collect()
     }
 }
 
-pub(crate) fn extract_sections(
-    main: Extract<Res<SectionTables>>,
-    mut tables: ResMut<SectionTables>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        // Any of them may begin at another word now.
-        let meshes = tables.entities.keys().chain(main.entities.keys());
-        changed.0.extend(meshes.copied().map(MainEntity::from));
-        tables.clone_from(&main);
+/// Up to four bytes, the first one lowest.
+fn word(bytes: &[u8]) -> u32 {
+    let bytes = std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0));
+    u32::from_le_bytes(bytes)
+}
+
+/// For each mesh with sections, bits 0 to 23 are its first word. Bits 24 to 31 are 0, or for a mesh
+/// that shares its id with others 1 more than what its numbers are shifted by.
+#[derive(Resource, Default)]
+pub(crate) struct SectionStarts(Shared<u32>);
+
+impl SectionStarts {
+    pub fn get(&self, mesh: Entity) -> Option<u32> {
+        self.0.get(mesh).copied()
     }
 }
 
 /// The sections of all meshes on the GPU, four triangles to a word.
 #[derive(Resource, Default)]
 pub(crate) struct SectionBuffer {
-    words: StorageBuffer<Vec<u32>>,
-    /// The first word of the sections.
-    starts: HashMap<EntitySections, u32>,
+    pub words: Table<1>,
+    packings: u32,
 }
 
 impl SectionBuffer {
-    /// The first word of a mesh's sections; `None` if it has none.
-    pub fn start(&self, tables: &SectionTables, mesh: Entity) -> Option<u32> {
-        let key = tables.entities.get(&mesh)?;
-        self.starts.get(key).copied()
-    }
-
     /// Always there after [`prepare_sections`].
     pub fn buffer(&self) -> Option<&Buffer> {
         self.words.buffer()
     }
-
-    fn fill(&mut self, tables: &SectionTables) {
-        let words = self.words.get_mut();
-        words.clear();
-        // A buffer must not be empty.
-        words.push(0);
-        self.starts.clear();
-        for key in tables.entities.values() {
-            let Some(numbers) = tables.numbers.get(&key.0) else {
-                continue;
-            };
-            self.starts.entry(*key).or_insert_with(|| {
-                let start = words.len() as u32;
-                let (_, shift) = *key;
-                let numbers = numbers.iter().map(|n| number(*n, shift));
-                words.extend(packed(numbers));
-                start
-            });
-        }
-    }
 }
 
-/// The number of a section as shaders read it: those of meshes that share their id have
-/// another range, 128 to 254, in which they are shifted.
-fn number(section: u8, shift: Option<u8>) -> u8 {
-    match shift {
-        Some(shift) if section != SILENT => {
-            let shifted = (u16::from(section - 1) + u16::from(shift)) % u16::from(NUMBERS);
-            NUMBERS + 1 + shifted as u8
-        }
-        _ => section,
+pub(crate) fn extract_sections(
+    main: Extract<Res<SectionTables>>,
+    mut starts: ResMut<SectionStarts>,
+    mut buffer: ResMut<SectionBuffer>,
+    mut changed: ResMut<ChangedObjects>,
+) {
+    starts.0.follow(&main.starts, &mut changed.0);
+    let buffer = &mut *buffer;
+    let mut known = buffer.words.len();
+    if std::mem::replace(&mut buffer.packings, main.packings) != main.packings {
+        buffer.words.truncate(main.words.len());
+        known = 0;
     }
-}
-
-/// Four bytes to a word, the first one lowest.
-fn packed(bytes: impl Iterator<Item = u8>) -> Vec<u32> {
-    let bytes: Vec<u8> = bytes.collect();
-    let word = |four: &[u8]| {
-        let bytes = std::array::from_fn(|i| four.get(i).copied().unwrap_or(0));
-        u32::from_le_bytes(bytes)
-    };
-    bytes.chunks(4).map(word).collect()
+    for (at, word) in main.words.iter().enumerate().skip(known) {
+        buffer.words.set(at, [*word]);
+    }
 }
 
 pub(crate) fn prepare_sections(
-    tables: Res<SectionTables>,
     mut buffer: ResMut<SectionBuffer>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
-    if !tables.is_changed() && buffer.buffer().is_some() {
-        return;
+    // A buffer must not be empty.
+    if buffer.words.len() == 0 {
+        buffer.words.set(0, [0]);
     }
-    buffer.fill(&tables);
-    buffer.words.write_buffer(&device, &queue);
+    buffer.words.write(&device, &queue);
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{asset::uuid::Uuid, platform::collections::HashSet};
+
+    use super::*;
+
+    /// After any changes, every entity whose mesh is divided names the words of that mesh, at most
+    /// about half of all words are unused, and only starts that have to are written.
+    #[test]
+    fn words_follow_meshes() {
+        let mut tables = SectionTables::default();
+        let mut divided: HashMap<SectionKey, Vec<u8>> = HashMap::default();
+        let mut wanted: EntityHashMap<EntitySections> = EntityHashMap::default();
+        let mut random = 1_u32;
+        let mut next = move |below: u32| {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (random >> 12) % below
+        };
+        for round in 0..3000 {
+            tables.begin();
+            let packings = tables.packings;
+            let entity = Entity::from_raw_u32(next(12)).expect("an index");
+            let mesh = AssetId::from(Uuid::from_u128(u128::from(next(5))));
+            let key = SectionKey { mesh, angle: 50 };
+            match next(4) {
+                0 => {
+                    wanted.remove(&entity);
+                    tables.assign(entity, None);
+                }
+                1 => {
+                    let numbers = vec![next(200) as u8 + 1; next(20) as usize + 1];
+                    tables.add(key, &numbers);
+                    if wanted.values().any(|(used, _)| *used == key) {
+                        divided.insert(key, numbers);
+                    }
+                }
+                _ => {
+                    let shift = (next(2) == 0).then_some(entity.index_u32() as u8);
+                    wanted.insert(entity, (key, shift));
+                    tables.assign(entity, Some((key, shift)));
+                }
+            }
+            let used: HashSet<SectionKey> = wanted.values().map(|(key, _)| *key).collect();
+            divided.retain(|key, _| used.contains(key));
+            let written = tables.starts.changed().len();
+            tables.pack();
+            assert!(tables.packings != packings || tables.starts.changed().len() == written);
+            for (entity, (key, shift)) in &wanted {
+                let start = tables.starts.get(*entity).copied();
+                let numbers = divided.get(key);
+                assert_eq!(start.is_some(), numbers.is_some(), "round {round}");
+                if let (Some(start), Some(numbers)) = (start, numbers) {
+                    assert_eq!(start >> 24, shift.map_or(0, |shift| u32::from(shift) + 1));
+                    let words = &tables.words[start as usize & 0xff_ffff..];
+                    let packed: Vec<u32> = numbers.chunks(4).map(word).collect();
+                    assert_eq!(words[..packed.len()], packed, "round {round}");
+                }
+            }
+            assert!(
+                tables
+                    .starts
+                    .values()
+                    .keys()
+                    .all(|e| wanted.contains_key(e))
+            );
+            let all: usize = divided
+                .values()
+                .map(|numbers| numbers.len().div_ceil(4))
+                .sum();
+            assert!(
+                tables.words.len() <= 2 * all + 3,
+                "{}, {all}",
+                tables.words.len()
+            );
+        }
+        assert!(tables.packings > 10, "{}", tables.packings);
+    }
 }

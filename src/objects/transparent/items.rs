@@ -128,7 +128,7 @@ impl TransparentItems<'_> {
         view_key: MeshPipelineKey,
         targets: QueuedDepth,
     ) -> Result<(Bin, u32), Missing> {
-        if !self.writes.cutoffs.contains_key(&entity.id()) {
+        if self.writes.cutoffs.get(entity.id()).is_none() {
             return Err(Missing::NotDrawn);
         }
         let drawn = self.drawn.get(entity)?;

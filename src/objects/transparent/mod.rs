@@ -9,19 +9,17 @@ use bevy::{
     asset::embedded_asset,
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
         reflect::ReflectComponent,
         schedule::IntoScheduleConfigs,
-        system::{Query, Res, ResMut},
+        system::{Res, ResMut},
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
+        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
         render_resource::{SpecializedMeshPipelines, SpecializedRenderPipelines},
         renderer::RenderAdapterInfo,
+        sync_world::MainEntityHashSet,
     },
 };
 
@@ -30,9 +28,9 @@ use self::{
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
 use super::{
-    changes::{ChangedObjects, NoteChanges},
+    changes::{Follow, NoteChanges, follow},
     depth_test::count_ids,
-    inherit::{Inherited, inherit},
+    inherit::{Inherit, Inherited, watch},
     instances::expand_instances,
     table::DepthWrites,
 };
@@ -100,39 +98,33 @@ impl DepthWrite {
     }
 }
 
-/// Notes the meshes with the component, and those that inherit it.
-fn assign_depth_writes(
-    asking: Query<(Entity, &DepthWrite)>,
-    children: Query<&Children>,
-    mut writes: ResMut<DepthWrites>,
-    mut changes: Inherited<DepthWrite>,
-) {
-    if !changes.is_changed() || (asking.is_empty() && writes.cutoffs.is_empty()) {
-        return;
+impl Inherit for DepthWrite {
+    fn is_inherited(&self) -> bool {
+        self.inherit
     }
-    let mut cutoffs = EntityHashMap::default();
-    for (entity, write) in &asking {
-        let write = write.sanitized();
-        let own = |child| asking.contains(child);
-        let said = (entity, write.alpha_cutoff);
-        inherit(&mut cutoffs, said, write.inherit, &children, own);
-    }
-    writes.set_if_neq(DepthWrites { cutoffs });
 }
 
-fn extract_depth_writes(
-    main: Extract<Res<DepthWrites>>,
-    mut writes: ResMut<DepthWrites>,
-    mut changed: ResMut<ChangedObjects>,
-) {
-    if main.is_changed() {
-        changed.note(&writes.cutoffs, &main.cutoffs);
-        writes.clone_from(&main);
+/// Notes the meshes with the component, and those that inherit it.
+fn assign_depth_writes(mut asking: Inherited<DepthWrite>, mut writes: ResMut<DepthWrites>) {
+    let changed = asking.update();
+    writes.cutoffs.begin();
+    for mesh in changed {
+        let cutoff = asking
+            .of(mesh)
+            .map(|(_, write)| write.sanitized().alpha_cutoff);
+        writes.cutoffs.set(mesh, cutoff);
+    }
+}
+
+impl Follow for DepthWrites {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.cutoffs.follow(&main.cutoffs, changed);
     }
 }
 
 /// The part in the main world.
 pub(super) fn build(app: &mut App) {
+    watch::<DepthWrite>(app);
     app.register_type::<DepthWrite>()
         .add_systems(PostUpdate, assign_depth_writes);
 }
@@ -159,7 +151,7 @@ pub(super) fn finish(app: &mut App) {
                 init_normal_copy,
             ),
         )
-        .add_systems(ExtractSchedule, extract_depth_writes.in_set(NoteChanges))
+        .add_systems(ExtractSchedule, follow::<DepthWrites>.in_set(NoteChanges))
         .add_systems(
             Render,
             // With OpenGL, no transparent mesh is drawn, and the depth is not copied.
