@@ -18,7 +18,7 @@ use bevy::{
 };
 
 use super::{
-    cracks::{CrackBuffers, CrackStore, ViewCracks},
+    cracks::{CrackBuffers, CrackStore, LineDensities, ViewCracks},
     draw::StrokeList,
     find::Resolved,
     key::LineKey,
@@ -55,6 +55,8 @@ pub(crate) struct ViewLines {
 /// The cracks of a view.
 pub(crate) struct Cracks {
     pub store: CrackStore,
+    /// How densely lines lie, if they have a budget.
+    pub densities: Option<LineDensities>,
     /// The best cracks of each pixel's column, unless only neighbours are searched.
     pub columns: Option<CachedTexture>,
     /// The strokes beyond loose ends, if lines have such.
@@ -117,7 +119,10 @@ fn cracks(
     let columns = cracks
         .columns
         .map(|_| drawn("comics_line_columns", COLUMN_FORMAT));
-    let (store, strokes) = before.map_or((None, None), |b| (Some(b.store), b.strokes));
+    let before = before.map(|b| (Some(b.store), b.densities, b.strokes));
+    let (store, densities, strokes) = before.unwrap_or_default();
+    let densities =
+        (passes.key.contains(LineKey::BUDGET)).then(|| LineDensities::new(densities, device, rect));
     let strokes = (cracks.strokes).map(|_| StrokeList::new(strokes, (device, queue), rect));
     let store = match cracks.find {
         FindPass::Cells(_) => {
@@ -132,6 +137,7 @@ fn cracks(
     };
     Some(Cracks {
         store,
+        densities,
         columns,
         strokes,
     })

@@ -102,9 +102,10 @@ pub struct Outlines {
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
-    /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
-    /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
-    /// keeps its width. Faithful lines have no budget. Needs compute shaders.
+    /// distance: there they are thinner, and below 0.6 physical pixels fainter. The area reaches
+    /// `2 * width / ink_budget` far from a line, at least 16 and at most 1024 physical pixels, and
+    /// its middle counts most. So a line that is alone keeps its width, and so do a pair, a
+    /// crossing or a branch. Faithful lines have no budget. Needs compute shaders.
     /// Range 0.05 to 1 (no limit), default 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub ink_budget: f32,

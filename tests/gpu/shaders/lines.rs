@@ -136,6 +136,7 @@ fn completing() -> Vec<Variant> {
     [
         each("lines/draw/columns.wgsl", STORES),
         each("lines/link/link.wgsl", &["", "LAST"]),
+        each("lines/link/density.wgsl", &["", "COARSE"]),
         each("lines/link/join.wgsl", &[""]),
         each("lines/link/bridge.wgsl", &[""]),
         each("lines/tiles/tiles.wgsl", &[""]),
