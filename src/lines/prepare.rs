@@ -9,6 +9,7 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
+    log::warn_once,
     math::{UVec4, Vec4Swizzles},
     render::{
         render_resource::{TextureUsages, UniformBuffer},
@@ -25,6 +26,7 @@ use super::{
     memory::{LineLives, LineMemory},
     passes::{FindPass, LinePasses},
     request::{LinePassUniform, LineRequest, blocks},
+    settings::LineEdge,
     textures::{BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT, texture},
     tiles::TileLists,
 };
@@ -204,6 +206,13 @@ pub(crate) fn prepare_view_lines(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for (entity, request, passes, lines) in &mut views {
+        if request.settings.edge == LineEdge::Hard && request.samples > 1 {
+            warn_once!(
+                "{} has lines with `LineEdge::Hard` and a multisampled picture, whose edges are \
+                 smooth: give it `Msaa::Off`",
+                request.camera
+            );
+        }
         let mut new = ViewLines::default();
         let known = lines.map(|lines| lines.into_inner());
         let is_new = known.is_none();

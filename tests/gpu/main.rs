@@ -70,6 +70,7 @@ mod percentiles;
 mod persistence;
 mod pictures;
 mod pipelines;
+mod pixel_art;
 mod plugin_order;
 mod prelude;
 mod pressure;

@@ -21,26 +21,26 @@ fn borders(size: i64, value: impl Fn(f64, f64) -> i64) -> HashSet<Place> {
 }
 
 /// Truth: a field of parallel lines `spacing` apart has the density 1 / spacing at 0, 45 and 90
-/// degrees, and at most 8.3 % more between.
+/// degrees, and at most 8.3 % more between; in the mean of all places of the lines between the
+/// squares.
 #[test]
 fn fields_of_parallel_lines_have_their_density() {
-    const SIZE: i64 = 160;
-    for spacing in [3.0, 5.0, 8.0] {
-        for turn in 0..36 {
-            let (sin, cos) = (f64::from(turn) * 5.0).to_radians().sin_cos();
-            // Away from the centres of pixels.
-            let along = |x: f64, y: f64| x * cos + y * sin + 0.013;
-            let lines = borders(SIZE, |x, y| (along(x, y) / spacing).floor() as i64);
-            let densities = Densities::new(&lines, [SIZE; 2]);
-            let middle = densities.around([SIZE / 2; 2], 40.0) * spacing;
-            // By so much, the squares do not end with whole lines.
-            let noise = 0.03;
-            let straight = turn % 9 == 0;
-            let most = if straight { 1.0 } else { 1.083 };
-            assert!(
-                middle > 1.0 - noise && middle < most + noise,
-                "{spacing} px, {turn}: {middle}"
-            );
+    const SIZE: i64 = 128;
+    for spacing in [3, 5, 8] {
+        for turn in 0..12 {
+            let (sin, cos) = (f64::from(turn) * 15.0).to_radians().sin_cos();
+            let places = (0..spacing).map(|shift| {
+                // Away from the centres of pixels.
+                let along = |x: f64, y: f64| x * cos + y * sin + f64::from(shift) + 0.013;
+                let line = |x, y| (along(x, y) / f64::from(spacing)).floor() as i64;
+                let densities = Densities::new(&borders(SIZE, line), [SIZE; 2]);
+                densities.around([SIZE / 2; 2], 40.0)
+            });
+            let mean = places.sum::<f64>();
+            let most = if turn % 3 == 0 { 1.0 } else { 1.083 };
+            let what = format!("{spacing} px, {turn}: {mean}");
+            // Shifts of whole pixels are all places only at right angles.
+            assert!(mean > 0.99 && mean < most + 0.01, "{what}");
         }
     }
 }
