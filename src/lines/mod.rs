@@ -3,7 +3,7 @@
 //! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
 //! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
 //! along weak ones, `join.wgsl` joins them over faces that are thinner than a pixel, `bridge.wgsl`
-//! closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
+//! closes gaps, `density.wgsl` measures how densely they lie, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
 //! `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
 mod cracks;
@@ -44,8 +44,8 @@ use bevy::{
 pub use cracks::ViewCracks;
 pub use modifiers::{LineFade, LineLayers, LineModifiers, LineSimplification, Sheet};
 pub use settings::{
-    Creases, LineBoil, LineColor, LineFog, LineResponse, LineWeight, MapJumps, ObjectEdges,
-    Outlines, Silhouettes,
+    Creases, LineBoil, LineColor, LineEdge, LineFog, LineResponse, LineWeight, MapJumps,
+    ObjectEdges, Outlines, Silhouettes,
 };
 
 pub(crate) use key::{ink_entry, owners_entry, range_entry};
@@ -139,6 +139,7 @@ fn load_shaders(app: &mut App) {
     embedded_asset!(app, "link/bridge.wgsl");
     embedded_asset!(app, "draw/ends.wgsl");
     embedded_asset!(app, "draw/strokes.wgsl");
+    embedded_asset!(app, "link/density.wgsl");
     embedded_asset!(app, "link/settle.wgsl");
     embedded_asset!(app, "tiles/tiles.wgsl");
     embedded_asset!(app, "tiles/tile.wgsl");

@@ -75,6 +75,8 @@ pub(crate) struct CellPasses {
     pub persist: Option<CachedComputePipelineId>,
     /// Closes gaps.
     pub bridge: Option<CachedComputePipelineId>,
+    /// Measures how densely lines lie: in small squares, and in large ones.
+    pub measure: Option<[CachedComputePipelineId; 2]>,
     /// Leaves out what is not part of a line, and makes lines smooth.
     pub settle: Option<CachedComputePipelineId>,
     /// Extends loose ends.
@@ -90,6 +92,8 @@ impl CellPasses {
     ) -> Self {
         let find = compute(SearchPass::Cells(key.for_find()));
         let link = continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last })));
+        let measure = (key.contains(LineKey::BUDGET))
+            .then(|| [false, true].map(|coarse| compute(SearchPass::Measure { coarse })));
         let mut with = |flag, pass| key.contains(flag).then(|| compute(pass));
         Self {
             find,
@@ -97,16 +101,17 @@ impl CellPasses {
             join: with(LineKey::LEDGES, SearchPass::Join),
             persist: with(LineKey::PERSISTS, SearchPass::Persist(key.for_persist())),
             bridge: with(LineKey::BRIDGED, SearchPass::Bridge),
+            measure,
             settle: with(LineKey::COMPLETED, SearchPass::Settle(key.for_settle())),
             ends: with(LineKey::OVERSHOOTS, SearchPass::Ends(key.for_ends())),
         }
     }
 
     pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
-        let link = self.link.into_iter().flatten();
+        let pairs = [self.link, self.measure].into_iter().flatten().flatten();
         let rest = [self.join, self.persist, self.bridge, self.settle, self.ends];
         let rest = rest.into_iter().flatten();
-        [self.find].into_iter().chain(link).chain(rest)
+        [self.find].into_iter().chain(pairs).chain(rest)
     }
 }
 
@@ -147,8 +152,8 @@ impl LinePipelines<'_> {
     /// Whether the device has what `walk.wgsl`, `tiles.wgsl` and `cells.wgsl` bind.
     fn has_compute(&self, request: &LineRequest) -> bool {
         let limits = self.device.limits();
-        // Those of `ends.wgsl`.
-        const BUFFERS: u32 = 6;
+        // Those of `settle.wgsl`.
+        const BUFFERS: u32 = 7;
         limits.max_compute_workgroup_size_x > 0
             && limits.max_storage_textures_per_shader_stage > 0
             && limits.max_storage_buffers_per_shader_stage >= BUFFERS

@@ -12,6 +12,8 @@ use bevy::{
     shader::Shader,
 };
 
+use crate::gpu::definitions;
+
 use super::{
     draw::stroke_layout,
     key::LineKey,
@@ -31,6 +33,7 @@ pub(crate) struct LineShaders {
     bridge: Handle<Shader>,
     ends: Handle<Shader>,
     strokes: Handle<Shader>,
+    density: Handle<Shader>,
     settle: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
@@ -52,6 +55,7 @@ impl LineShaders {
             bridge: load_embedded_asset!(assets, "link/bridge.wgsl"),
             ends: load_embedded_asset!(assets, "draw/ends.wgsl"),
             strokes: load_embedded_asset!(assets, "draw/strokes.wgsl"),
+            density: load_embedded_asset!(assets, "link/density.wgsl"),
             settle: load_embedded_asset!(assets, "link/settle.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles/tiles.wgsl"),
             tile: tile_shader(assets),
@@ -80,6 +84,8 @@ pub(crate) enum SearchPass {
     Persist(LineKey),
     /// Closes gaps in lines.
     Bridge,
+    /// Measures how densely lines lie in small squares, or in large ones.
+    Measure { coarse: bool },
     /// Completes the cracks in the cells.
     Settle(LineKey),
     /// Finds the loose ends of lines.
@@ -99,16 +105,21 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Persist(_) => ("comics_persist_lines", "persist", &self.persist),
             SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
             SearchPass::Bridge => ("comics_bridge_lines", "bridge", &self.bridge),
+            SearchPass::Measure { .. } => ("comics_measure_lines", "measure", &self.density),
             SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
         };
         let (layout, shader_defs) = match pass {
             SearchPass::Walk(key) => (key.walk_layout(), key.defs()),
             SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
             SearchPass::Cells(key) => (key.cells_layout(), key.defs()),
-            SearchPass::Link { last } => {
-                let defs = last.then(|| "LAST".into());
-                (LineKey::link_layout(), defs.into_iter().collect())
-            }
+            SearchPass::Link { last } => (
+                LineKey::link_layout(),
+                definitions([(last, "LAST")]).collect(),
+            ),
+            SearchPass::Measure { coarse } => (
+                LineKey::measure_layout(),
+                definitions([(coarse, "COARSE")]).collect(),
+            ),
             SearchPass::Join => (LineKey::link_layout(), vec![]),
             SearchPass::Persist(key) => (key.persist_layout(), key.defs()),
             SearchPass::Ends(key) => (LineKey::ends_layout(), key.defs()),

@@ -9,6 +9,7 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
+    log::warn_once,
     math::{UVec4, Vec4Swizzles},
     render::{
         render_resource::{TextureUsages, UniformBuffer},
@@ -18,13 +19,14 @@ use bevy::{
 };
 
 use super::{
-    cracks::{CrackBuffers, CrackStore, ViewCracks},
+    cracks::{CrackBuffers, CrackStore, LineDensities, ViewCracks},
     draw::StrokeList,
     find::Resolved,
     key::LineKey,
     memory::{LineLives, LineMemory},
     passes::{FindPass, LinePasses},
     request::{LinePassUniform, LineRequest, blocks},
+    settings::LineEdge,
     textures::{BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT, texture},
     tiles::TileLists,
 };
@@ -55,6 +57,8 @@ pub(crate) struct ViewLines {
 /// The cracks of a view.
 pub(crate) struct Cracks {
     pub store: CrackStore,
+    /// How densely lines lie, if they have a budget.
+    pub densities: Option<LineDensities>,
     /// The best cracks of each pixel's column, unless only neighbours are searched.
     pub columns: Option<CachedTexture>,
     /// The strokes beyond loose ends, if lines have such.
@@ -117,7 +121,10 @@ fn cracks(
     let columns = cracks
         .columns
         .map(|_| drawn("comics_line_columns", COLUMN_FORMAT));
-    let (store, strokes) = before.map_or((None, None), |b| (Some(b.store), b.strokes));
+    let before = before.map(|b| (Some(b.store), b.densities, b.strokes));
+    let (store, densities, strokes) = before.unwrap_or_default();
+    let densities =
+        (passes.key.contains(LineKey::BUDGET)).then(|| LineDensities::new(densities, device, rect));
     let strokes = (cracks.strokes).map(|_| StrokeList::new(strokes, (device, queue), rect));
     let store = match cracks.find {
         FindPass::Cells(_) => {
@@ -132,6 +139,7 @@ fn cracks(
     };
     Some(Cracks {
         store,
+        densities,
         columns,
         strokes,
     })
@@ -198,6 +206,13 @@ pub(crate) fn prepare_view_lines(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for (entity, request, passes, lines) in &mut views {
+        if request.settings.edge == LineEdge::Hard && request.samples > 1 {
+            warn_once!(
+                "{} has lines with `LineEdge::Hard` and a multisampled picture, whose edges are \
+                 smooth: give it `Msaa::Off`",
+                request.camera
+            );
+        }
         let mut new = ViewLines::default();
         let known = lines.map(|lines| lines.into_inner());
         let is_new = known.is_none();

@@ -113,6 +113,9 @@ presets! {
         LIGNE_CLAIRE: "ligne-claire";
         /// A vector poster: four flat tones of each colour, dark blue lines around things.
         CLEAR_BANDS: "clear-bands";
+        /// Pixel art: flat tones, and black pixels along edges. For a camera with
+        /// [`Msaa::Off`](bevy::render::view::Msaa::Off) that draws to a small image.
+        PIXEL: "pixel";
         /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
         STORYBOOK: "storybook";
         /// A naturalist's plate: dots of ink over pale washes of colour, which fade with distance.
@@ -227,7 +230,7 @@ mod tests {
     /// those of the second paper or of later effects.
     #[test]
     fn looks_say_their_intent_and_do_not_lean_on_contours() {
-        assert_eq!(STYLES.len(), 36);
+        assert_eq!(STYLES.len(), 37);
         for look in STYLES {
             let first = look.source.lines().next().unwrap_or_default();
             let intent = first.strip_prefix("// ").unwrap_or_default();

@@ -16,8 +16,8 @@ const WINDOW: f64 = 20.0 * 4.0 * 2.0;
 /// Words of `settle.wgsl` for a cell: found cracks and lines, to the east and south, of its
 /// four columns.
 const SETTLE: f64 = 4.0 * 4.0;
-/// More words with a budget of ink: lines to the east and south in 24 columns, in two bands.
-const NEAR: f64 = 24.0 * 2.0 * 2.0;
+/// More loads with a budget of ink: the densities of 4 x 4 squares.
+const NEAR: f64 = 4.0 * 4.0;
 
 /// Edges between objects: each of their cracks is certain, so that none is left to continue a
 /// line, and none is left out.
@@ -99,6 +99,6 @@ fn outlines_dispatch_no_more_kernels_than_they_need() {
     assert_eq!(kernels(&mut small, wide), names("line_columns"));
     assert_eq!(
         kernels(&mut app(), Outlines::default()),
-        names("link_lines join_lines settle_lines")
+        names("link_lines join_lines measure_lines settle_lines")
     );
 }

@@ -73,6 +73,7 @@ mod percentiles;
 mod persistence;
 mod pictures;
 mod pipelines;
+mod pixel_art;
 mod plugin_order;
 mod prelude;
 mod pressure;

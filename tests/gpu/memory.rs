@@ -40,6 +40,49 @@ fn outline_as(small: &mut Small, outlines: Outlines, history_weight: f32, frames
     small.headless.step(frames);
 }
 
+/// The number of tiles with ink in the left half, if drawing inks every pixel of a tile.
+fn tiles(small: &mut Small) -> f64 {
+    const TILE: f64 = 16.0 * 16.0;
+    let left = (0..SIZE as u32).flat_map(|y| (0..64).map(move |x| (x, y)));
+    black_ink(&small.picture(), left) / TILE
+}
+
+/// In an empty view no tile is drawn, from the first frame on; and none after the size of the
+/// viewport has changed, when tiles are other parts of it.
+#[test]
+fn only_tiles_that_had_lines_are_drawn() {
+    let mut small = Small::alone(options(UVec2::splat(SIZE as u32)), Msaa::Off);
+    small.empty_view(Msaa::Off, Color::WHITE);
+    small.insert(TemporalAntiAliasing::default());
+    small.headless.step(2);
+    let mut shaders = small.world().resource_mut::<Assets<Shader>>();
+    let is_draw = |shader: &Shader| shader.path.ends_with("lines/draw/draw.wgsl");
+    let draw = shaders.iter().find(|(_, shader)| is_draw(shader));
+    let (id, text) = draw.map(|(id, s)| (id, s.source.as_str())).expect("it");
+    let inked = text.replace("return drawn;", "drawn.ink = vec4(1.0);\n    return drawn;");
+    let inked = Shader::from_wgsl(inked, "embedded://bevy_comics/lines/draw/draw.wgsl");
+    let _ = shaders.insert(id, inked);
+    outline(&mut small, 0.875, 1);
+    for frame in 1..6 {
+        assert_eq!(tiles(&mut small), 0.0, "frame {frame}");
+        small.headless.step(1);
+    }
+    let at = turned(-3.0, 2.0, -HALF, 0.2);
+    let wall = put(&mut small, Rectangle::new(61.3, 47.7), Color::WHITE, at);
+    small.headless.step(4);
+    assert!(tiles(&mut small) > 4.0);
+    small.world().despawn(wall);
+    small.headless.step(1);
+    assert!(tiles(&mut small) > 4.0, "lines are remembered");
+    small.camera_settings().viewport = Some(Viewport {
+        physical_size: UVec2::new(64, SIZE as u32),
+        ..default()
+    });
+    small.headless.step(1);
+    assert_eq!(tiles(&mut small), 0.0, "another size");
+    assert_eq!(small.errors(), 0);
+}
+
 /// The sum of ink in the picture.
 fn total(small: &Small) -> f32 {
     removed(small).iter().sum()

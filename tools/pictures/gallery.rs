@@ -24,10 +24,11 @@ const COMPARED: [BuiltIn; 3] = [BuiltIn::Village, BuiltIn::Figure, BuiltIn::Stre
 const FRAMES: usize = 6;
 
 /// The scene that shows a style best; else the village.
-const SHOWN: [(Preset, BuiltIn); 23] = [
+const SHOWN: [(Preset, BuiltIn); 24] = [
     (presets::SATURDAY_MORNING, BuiltIn::Figure),
     (presets::LIGNE_CLAIRE, BuiltIn::Figure),
     (presets::CLEAR_BANDS, BuiltIn::Figure),
+    (presets::PIXEL, BuiltIn::Figure),
     (presets::FIELD_GUIDE, BuiltIn::Figure),
     (presets::STAINED_GLASS, BuiltIn::Figure),
     (presets::UKIYO_E, BuiltIn::Mountains),

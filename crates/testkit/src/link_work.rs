@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// What completing the cracks of a style loads. Pixels are those of the listed cells; a texel,
-/// a word of a plane and the two cracks of a pixel count as one load each.
+/// a word of a plane, a density and the two cracks of a pixel count as one load each.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkWork {
     /// The cells of 4 x 8 pixels that the passes run for.
@@ -104,7 +104,7 @@ fn completing(counted: &str, path: &str, text: &str) -> String {
             swapped(text, start, &skip) + FILL_CELL
         }
         SETTLE => {
-            let text = tallied(text, "crack_words[", 8);
+            let text = tallied(&tallied(text, "crack_words[", 8), "densities[", 4);
             let end = "fill_cell(cell, u32(fetched_so_far().x));";
             counting(path, &(ended(&text, "\nfn settle(", end) + FILL_CELL))
         }

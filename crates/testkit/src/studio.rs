@@ -143,7 +143,7 @@ fn golden_presets(scene: BuiltIn) -> &'static str {
         }
         BuiltIn::Figure => {
             "saturday-morning field-guide stained-glass red-poster ballpoint red-chalk \
-             sumi-e"
+             sumi-e pixel"
         }
         BuiltIn::Street => "hard-boiled neon-night ukiyo-e survey-map oil-sketch",
         BuiltIn::Hall => "engraving",

@@ -107,6 +107,7 @@ impl Effect for Outlines {
             hold_frames: later.hold_frames,
             response: later.response,
             smooth: later.smooth,
+            edge: later.edge,
             fog: later.fog,
             ..mix_fields(self, other, t)
         }

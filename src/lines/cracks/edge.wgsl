@@ -192,6 +192,12 @@ fn fold(a: vec4<f32>, b: vec4<f32>) -> f32 {
     return select(-1.0, dot(d, d), a.w * b.w > 0.0);
 }
 
+// How much a surface faces a direction of the world, from above, for lines that belong to one of
+// two surfaces of which none hides the other. The direction is on no plane of symmetry of boxes.
+fn facing(normal: vec4<f32>) -> f32 {
+    return dot(normal.xyz, vec3(0.31, 0.90, 0.29));
+}
+
 // Response to folds.
 fn fold_response(folds: vec4<f32>, k: f32) -> vec4<f32> {
     return clamp(folds * (0.25 / (k * k)), vec4(0.0), vec4(1.0));

@@ -99,20 +99,32 @@ struct Owner {
     south: bool,
 }
 
-// Adds the line along a crack.
-fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at: vec2<f32>) {
-    let half_width = unpack_width(packed >> 20u);
-    let away = length((middle - at) * viewport_scale);
-    let exists = (packed & 7u) != 0u;
-    let covered = disc_coverage(away, width_here(half_width));
-    let kinds = select(0.0, covered, exists) * ink_of(packed);
+// Adds the ink of a line that covers a part of the pixel.
+fn add_ink(ink: ptr<function, Ink>, packed: u32, covered: f32, owner: Owner) {
+    let kinds = covered * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
     let stronger = alpha > (*ink).strongest;
     (*ink).owner = select((*ink).owner, owner.pixel, stronger);
     (*ink).strongest = max((*ink).strongest, alpha);
+#ifdef BRIDGED
+    (*ink).crack = select((*ink).crack, crack_of(packed, owner), stronger);
 #endif
+#endif
+}
+
+// A crack, as in chain.wgsl.
+fn crack_of(packed: u32, owner: Owner) -> vec3<i32> {
+    return vec3(owner.pixel - owner_step(packed, owner.south), select(0, 1, owner.south));
+}
+
+// Adds the line along a crack.
+fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at: vec2<f32>) {
+    let half_width = unpack_width(packed >> 20u);
+    let away = length((middle - at) * viewport_scale);
+    let exists = (packed & 7u) != 0u;
+    add_ink(ink, packed, disc_coverage(away, width_here(half_width)), owner);
     let border = select(1e6, away - half_width, exists);
     let nearest = border < (*ink).distances.x;
     follow(ink, middle, border);
@@ -120,9 +132,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
 #ifdef OWNERS
     (*ink).first_owner = select((*ink).first_owner, owner.pixel, nearest);
 #ifdef BRIDGED
-    let crack = vec3(owner.pixel - owner_step(packed, owner.south), select(0, 1, owner.south));
-    (*ink).crack = select((*ink).crack, crack, stronger);
-    (*ink).first_crack = select((*ink).first_crack, crack, nearest);
+    (*ink).first_crack = select((*ink).first_crack, crack_of(packed, owner), nearest);
 #endif
 #ifdef INWARD
     (*ink).inward = select((*ink).inward, inward_step(packed, owner.south), nearest);
@@ -320,6 +330,46 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
 #endif
 }
 
+#ifdef HARD
+// The packed crack to the east of a pixel, or to its south; 0 if there is none.
+fn crack_beside(p: vec2<i32>, south: bool) -> u32 {
+    let g = line_pass.grid;
+    if any(p < vec2(0)) || any(p >= g.rect.zw) {
+        return 0u;
+    }
+#ifdef BLOCKS
+    let inked = inked_rows(g, p.x, p.y, p.y);
+    if select(inked.x, inked.y, south) == 0u {
+        return 0u;
+    }
+#endif
+    let cracks = load_cracks(g, p);
+    return select(cracks.x, cracks.y, south);
+}
+
+// Adds the line along the side `towards` of a pixel that is `away` pixels from this one, if it
+// belongs to that pixel and is wide enough.
+fn add_side(ink: ptr<function, Ink>, centre: vec2<i32>, towards: vec2<i32>, away: i32) {
+    let pixel = centre + away * towards;
+    let south = towards.y != 0;
+    let packed = crack_beside(pixel + min(towards, vec2(0)), south);
+    let is_own = all(owner_step(packed, south) == max(-towards, vec2(0)));
+    let width = max(i32(round(2.0 * unpack_width(packed >> 20u))), 1);
+    add_ink(ink, packed, select(0.0, 1.0, is_own && away < width), Owner(pixel, south));
+}
+
+// Adds the lines along the four sides of a pixel, and those that are wider than the pixels
+// between.
+fn add_sides(ink: ptr<function, Ink>, centre: vec2<i32>) {
+    for (var away = 0; away < line_pass.grid.reach; away++) {
+        add_side(ink, centre, vec2(1, 0), away);
+        add_side(ink, centre, vec2(-1, 0), away);
+        add_side(ink, centre, vec2(0, 1), away);
+        add_side(ink, centre, vec2(0, -1), away);
+    }
+}
+#endif
+
 #ifdef SURFACE
 // From the pixel that owns a line to one whose samples all belong to its surface: the next one
 // across the line. A crack alone says too little: at the steps of a line that is nearly
@@ -354,7 +404,11 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     let centre = vec2<i32>(floor(at));
     var ink: Ink;
     ink.distances = vec2(1e6);
+#ifdef HARD
+    add_sides(&ink, centre);
+#else
     search(&ink, centre, at);
+#endif
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
     let continues = ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45;

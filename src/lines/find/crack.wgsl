@@ -53,9 +53,20 @@ fn has(kinds: vec4<u32>, kind: u32) -> vec4<bool> {
 }
 
 // Whether the line belongs to `here`: to the object that draws this kind of line if the
-// other does not, otherwise to the nearer one, otherwise to `here`.
-fn owned(here_nearer: vec4<bool>, has_here: vec4<bool>, has_there: vec4<bool>) -> vec4<bool> {
-    return select(here_nearer, has_here, has_here != has_there);
+// other does not, otherwise to the one that is preferred.
+fn owned(here_preferred: vec4<bool>, has_here: vec4<bool>, has_there: vec4<bool>) -> vec4<bool> {
+    return select(here_preferred, has_here, has_here != has_there);
+}
+
+// Whether a line along which no surface hides the other belongs to `here`, if both draw it.
+fn preferred(at: Borders) -> vec4<bool> {
+#ifdef HARD
+    // One side all along: the object of the larger id, or the surface that faces a direction more.
+    let object = at.object_here > at.object_there;
+    return select(at.faces_more >= vec4(0.0), object, at.object_here != at.object_there);
+#else
+    return at.here >= at.there;
+#endif
 }
 
 fn half_width_of(slots: vec4<u32>, s: Lines) -> vec4<f32> {
@@ -177,7 +188,7 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     found.ink = select(found.ink, ink, crease);
     // At a rim a crease only continues another.
     found.certain |= crease & ridge & (response >= vec4(s.crease_limit));
-    found.mine = select(found.mine, owned(found.mine, drawn_here, drawn_there), crease);
+    found.mine = select(found.mine, owned(preferred(at), drawn_here, drawn_there), crease);
     return found;
 }
 #endif
@@ -191,7 +202,7 @@ fn add_object_edges(before: Found, s: Lines, at: Borders, reference: vec4<f32>, 
     let drawn_there = has(there, OBJECT);
     let here_nearer = at.here >= at.there;
     let hides = abs(at.here - at.there) > s.jump * reference;
-    let mine = select(owned(here_nearer, drawn_here, drawn_there), here_nearer, hides);
+    let mine = select(owned(preferred(at), drawn_here, drawn_there), here_nearer, hides);
     let drawn = select(drawn_there, drawn_here, mine);
     let object = (at.object_here != at.object_there) & drawn;
     found.kinds |= select(vec4(0u), vec4(OBJECT), object);
@@ -271,7 +282,7 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
     ledge = are_ledges(found, s, at, here, there);
     found.kinds |= select(vec4(0u), vec4(CREASE), ledge);
     found.ink = select(found.ink, vec4(1.0), ledge);
-    found.mine = select(found.mine, owned(found.mine, has(here, CREASE), has(there, CREASE)), ledge);
+    found.mine = select(found.mine, owned(preferred(at), has(here, CREASE), has(there, CREASE)), ledge);
 #endif
     return Cracks(packed_of(found, s, at), found.certain, ledge);
 }

@@ -4,7 +4,7 @@
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
-#import bevy_comics::lines::edge::{fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
+#import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
 #ifdef NORMALS
@@ -58,6 +58,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let e = texel_normal(origin + vec2(high.x, p.y), 0);
     let s = texel_normal(origin + vec2(p.x, high.y), 0);
     at.folds = vec2(fold(n, e), fold(n, s)).xyxy;
+#ifdef HARD
+    at.faces_more = facing(n) - vec2(facing(e), facing(s)).xyxy;
+#endif
     let folds_before = vec2(
         fold(texel_normal(origin + vec2(low.x, p.y), 0), n),
         fold(texel_normal(origin + vec2(p.x, low.y), 0), n),

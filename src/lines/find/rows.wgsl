@@ -5,7 +5,7 @@
 // ids, a walk down 32 rows loads 6 texels a pixel, and one down 8 rows 8.5, instead of 21.
 
 #import bevy_comics::depth::view::texel_depth
-#import bevy_comics::lines::edge::{fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
+#import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -44,6 +44,8 @@ struct Above {
     // Normals of the row above, by column.
     normals: array<vec4<f32>, 4>,
     folds: array<vec4<f32>, 3>,
+    // HARD: see facing.
+    facings: array<vec4<f32>, 3>,
     objects: array<vec4<u32>, 3>,
     marks: array<vec4<u32>, 3>,
 }
@@ -60,6 +62,8 @@ struct Borders {
     folds: vec4<f32>,
     ridge: vec4<bool>,
     rim: vec4<bool>,
+    // HARD: by how much more `here` faces the direction of lines that hide nothing.
+    faces_more: vec4<f32>,
     object_here: vec4<u32>,
     object_there: vec4<u32>,
     marks_here: vec4<u32>,
@@ -126,6 +130,14 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
     let folds = vec4(fold(n_a, n_b), fold(n_b, n_c), fold(n_c, n_d), fold(n_d, n_e));
     (*found).east.folds = folds;
     (*found).south.folds = (*above).folds[1];
+#ifdef HARD
+    let facings = vec4(facing(n_a), facing(n_b), facing(n_c), facing(n_d));
+    (*found).east.faces_more = facings - vec4(facings.yzw, facing(n_e));
+    (*found).south.faces_more = (*above).facings[2] - (*above).facings[1];
+    (*above).facings[2] = (*above).facings[1];
+    (*above).facings[1] = (*above).facings[0];
+    (*above).facings[0] = facings;
+#endif
 #ifndef BOUNDS
     let before = vec4(fold(normal_at(c, c.west.y, y), n_a), folds.xyz);
     let beyond = vec4(folds.yzw, fold(n_e, normal_at(c, c.east.y, y)));

@@ -69,6 +69,16 @@ impl LineKey {
         in_cells("comics_bridge_lines", vec![], [20], [18, 21])
     }
 
+    pub fn measure_layout() -> BindGroupLayoutDescriptor {
+        let planes = planes_entry(ShaderStages::COMPUTE);
+        let [densities] = written_buffers([33]);
+        layout(
+            "comics_measure_lines",
+            ShaderStages::COMPUTE,
+            [planes, densities],
+        )
+    }
+
     pub fn persist_layout(self) -> BindGroupLayoutDescriptor {
         let inputs = self.inputs(ShaderStages::COMPUTE);
         in_cells("comics_persist_lines", inputs, [28], [21, 29])
@@ -87,6 +97,9 @@ impl LineKey {
         let mut entries = self.inputs(ShaderStages::COMPUTE);
         if self.contains(Self::SMOOTH) {
             entries.extend(written_buffers([22]));
+        }
+        if self.contains(Self::BUDGET) {
+            entries.extend(read_buffers([33]));
         }
         in_cells("comics_settle_lines", entries, [20], [18])
     }

@@ -4,7 +4,10 @@ use bevy::{math::Vec2, shader::ShaderDefVal};
 use bitflags::bitflags;
 
 use crate::{
-    lines::request::{LineRequest, Search},
+    lines::{
+        request::{LineRequest, Search},
+        settings::LineEdge,
+    },
     settings::Equations,
 };
 
@@ -115,6 +118,8 @@ bitflags! {
         /// Of the sheet that lines are drawn on: edges are rough; wide lines have streaks.
         const SPREAD = 1 << 57;
         const STREAKS = 1 << 58;
+        /// Lines ink whole pixels.
+        const HARD = 1 << 59;
     }
 }
 
@@ -207,13 +212,16 @@ impl LineKey {
             (lines.joins(), Self::LEDGES),
             (rims && lines.links(), Self::RIMS),
             (lines.gap_closing > 0, Self::BRIDGED),
-            (lines.smooth, Self::SMOOTH),
+            (lines.is_smooth(), Self::SMOOTH),
             (kinds != [1.0; 4], Self::KIND_WEIGHT),
             (weight.reads_ids(), Self::OUTER_WEIGHT),
             (weight.reads_normals(), Self::LIGHT_WEIGHT),
             (request.widths, Self::WIDTH_MAP),
             (weight.perspective > 0.0, Self::PERSPECTIVE_WEIGHT),
-            (weight.nib_roundness < 1.0 && lines.smooth, Self::NIB_WEIGHT),
+            (
+                weight.nib_roundness < 1.0 && lines.is_smooth(),
+                Self::NIB_WEIGHT,
+            ),
             (weight.taper > 0.0, Self::TAPER_WEIGHT),
             (lines.ink_budget < 1.0, Self::BUDGET),
             (request.fog.is_some(), Self::FOG),
@@ -228,6 +236,7 @@ impl LineKey {
             (request.needs_owners(), Self::SURFACE),
             (request.needs_owners() && multisampled, Self::INWARD),
             (lines.boil.moves(), Self::BOIL),
+            (lines.edge == LineEdge::Hard, Self::HARD),
             (request.sheet.ink_bleed > 0.0, Self::SPREAD),
             (request.sheet.dry_brush > 0.0, Self::STREAKS),
         ];
@@ -272,7 +281,8 @@ impl LineKey {
     pub fn for_find(self) -> Self {
         let simplified = Self::SIMPLIFIED_LINES | Self::FINDS_BY_OBJECTS;
         let objects = Self::OBJECT_EDGES | Self::OBJECT_STYLES | Self::SECTIONS;
-        self & (Self::FOUND | Self::OBJECT_STYLES | Self::FADING | simplified | Self::COMPLETED)
+        let stored = Self::COMPLETED | Self::HARD;
+        self & (Self::FOUND | Self::OBJECT_STYLES | Self::FADING | simplified | stored)
             | Self::DEPTH
             | self.when(Self::SILHOUETTES | Self::CREASES, Self::EXCESS)
             | self.when(Self::CREASES, Self::NORMALS)
@@ -345,7 +355,7 @@ impl LineKey {
     pub fn for_draw(self) -> Self {
         let searched = Self::COMPLETED | Self::SMOOTH | Self::VARIED;
         let drawn = self.for_ink()
-            | self & (Self::NEIGHBOURS | Self::COLUMNS | Self::BLOCKS | Self::OWNERS)
+            | self & (Self::NEIGHBOURS | Self::COLUMNS | Self::BLOCKS | Self::OWNERS | Self::HARD)
             | self.when(Self::OWNERS, self & Self::BRIDGED);
         if self.contains(Self::COLUMNS) {
             drawn

@@ -1,38 +1,56 @@
 #define_import_path bevy_comics::lines::budget
 
-// How much of the width of lines is left where they crowd. Pure functions.
+// How much of the width of lines is left where they crowd, and where it is stored how densely
+// they lie: in squares of 8 pixels, and in squares of twice the size, six times over. Pure
+// functions.
 
-// Columns and rows of the neighbourhood of a cell: ten columns and twelve rows more on each
-// side.
-const NEAR_COLUMNS: i32 = 24;
-// The rows of the neighbourhood that count twice, and those that count three times.
-const NEARER_ROWS: u32 = 0x00ffff00u;
-const NEAREST_ROWS: u32 = 0x000ff000u;
+#import bevy_comics::lines::edge::Grid
 
-// The cracks of a column, by how near their rows are: one bit for each of its 32 rows.
-fn counted(bits: u32) -> f32 {
-    return f32(countOneBits(bits) + countOneBits(bits & NEARER_ROWS) + countOneBits(bits & NEAREST_ROWS));
+// Pixels along the side of a square of level 0.
+const SQUARE: i32 = 8;
+const LAST_LEVEL: i32 = 6;
+
+// Squares of a level across and down the grid.
+fn squares(g: Grid, level: i32) -> vec2<i32> {
+    let side = SQUARE << u32(level);
+    return (g.rect.zw + side - 1) / side;
 }
 
-// The weight of a column: 1 at the middle of the neighbourhood, 0 at its ends.
-fn column_weight(column: i32) -> f32 {
-    return 1.0 - abs(f32(column) - 11.5) / 12.0;
+// Where a square is stored: level by level, each in rows as long as those of level 0.
+fn square_index(g: Grid, level: i32, square: vec2<i32>) -> i32 {
+    let all = squares(g, 0);
+    // At least the sum of the rows of the levels before: all.y + all.y / 2 + ..., rounded up.
+    let first = 2 * all.y - ((2 * all.y) >> u32(level)) + level;
+    return (first + square.y) * all.x + square.x;
 }
 
-// The length of lines per area, in 1 / pixels, from the sum of `counted` times
-// `column_weight`. Lines of all directions have 4 / pi as many cracks as pixels of length
-// (Cauchy and Crofton).
-fn line_density(sum: f32) -> f32 {
-    return 0.7853982 * sum / (12.0 * 56.0);
+// The radius in pixels of the area in which lines of this width share their budget. A line that
+// is alone covers half of its budget there, and two that cross all of it.
+fn budget_radius(budget: f32, width: f32) -> f32 {
+    return 2.0 * width / budget;
 }
 
-// The density of a single line through the middle, and one from which lines crowd.
-const ALONE: f32 = 0.075;
-const CROWDED: f32 = 0.15;
+// A radius between those of two levels, which are two squares each: the lower of the levels, and
+// the part of the next one with which a single line has the density 1 / radius.
+struct Levels {
+    low: i32,
+    part: f32,
+}
 
-// The factor of a line's width: crowded lines of this width and density cover `budget` of
-// the area at most. A line that is alone keeps its width.
+fn levels_of(radius: f32) -> Levels {
+    let steps = max(radius / f32(2 * SQUARE), 1.0);
+    let low = min(i32(firstLeadingBit(u32(steps))), LAST_LEVEL - 1);
+    return Levels(low, min(2.0 - f32(2 << u32(low)) / steps, 1.0));
+}
+
+// The weights of four squares in a row under a tent with a radius of two squares, whose top is
+// `part` of a square behind the middle of the second one.
+fn tent(part: f32) -> vec4<f32> {
+    return 0.5 - 0.25 * abs(vec4(-1.0, 0.0, 1.0, 2.0) - part);
+}
+
+// The factor of a line's width with which lines of this width cover `budget` of an area in which
+// their length per area is `density`.
 fn budget_weight(budget: f32, density: f32, width: f32) -> f32 {
-    let crowd = density * smoothstep(ALONE, CROWDED, density);
-    return min(budget / max(crowd * width, 1e-6), 1.0);
+    return min(budget / max(density * width, 1e-6), 1.0);
 }

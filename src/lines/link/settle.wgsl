@@ -7,7 +7,8 @@
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
-    COLUMNS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST, LINKED_SOUTH,
+    CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST,
+    LINKED_SOUTH,
 }
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
 #ifdef DEPTH
@@ -28,7 +29,9 @@
 #import bevy_comics::lines::weight::{kind_weight, light_weight, nib_weight, perspective_weight}
 #import bevy_comics::lines::weight::{taper_weight, weighted_crack}
 #ifdef BUDGET
-#import bevy_comics::lines::budget::{NEAR_COLUMNS, budget_weight, column_weight, counted, line_density}
+#import bevy_comics::lines::budget::{
+    SQUARE, budget_radius, budget_weight, levels_of, square_index, squares, tent,
+}
 #import bevy_comics::lines::edge::unpack_width
 #endif
 #ifdef FOG
@@ -55,8 +58,8 @@
 #endif
 
 #ifdef BUDGET
-// Rows of a window above a cell.
-const ROWS_ABOVE: i32 = 12;
+// See density.wgsl.
+@group(0) @binding(33) var<storage> densities: array<f32>;
 #endif
 
 #ifdef SMOOTH
@@ -199,23 +202,51 @@ fn surface_weight(here: vec2<i32>, there: vec2<i32>, crack: vec3<i32>, silhouett
 #endif
 
 #ifdef BUDGET
-// Length of lines per area around the cell, in 1 / pixels of the viewport.
-var<private> density: f32;
+// The middle of the cell in pixels of the grid; a radius, and the density of lines within it.
+var<private> middle_of_cell: vec2<f32>;
+var<private> known_radius: f32;
+var<private> known_density: f32;
 
-fn density_around(g: Grid, cell: vec2<i32>) -> f32 {
-    let first = cell - vec2((NEAR_COLUMNS - COLUMNS) / 2, ROWS_ABOVE);
+// The density around the cell, in 1 / pixels of the grid, with a radius of two squares of a
+// level. Beyond the grid, lines are as dense as at its border.
+fn density_at(g: Grid, level: i32) -> f32 {
+    let last = squares(g, level) - 1;
+    let place = middle_of_cell / f32(SQUARE << u32(level)) - 0.5;
+    let second = floor(place);
+    let across = tent(place.x - second.x);
+    let down = tent(place.y - second.y);
     var sum = 0.0;
-    for (var i = 0; i < NEAR_COLUMNS; i++) {
-        let east = column_window(g, LINKED_EAST, first.x + i, first.y);
-        let south = column_window(g, LINKED_SOUTH, first.x + i, first.y);
-        sum += column_weight(i) * (counted(east) + counted(south));
+    for (var i = 0; i < 16; i++) {
+        let step = vec2(i & 3, i >> 2u);
+        let square = clamp(vec2<i32>(second) + step - 1, vec2(0), last);
+        sum += across[step.x] * down[step.y] * densities[square_index(g, level, square)];
     }
-    return line_density(sum) * g.from_viewport.x;
+    return sum;
+}
+
+// The factor of a line's width in pixels of the viewport.
+fn crowd_weight(g: Grid, width: f32) -> f32 {
+    let budget = line_pass.weight.budget;
+    let scale = g.from_viewport.x;
+    let radius = scale * budget_radius(budget, width);
+    // Most lines of a cell have the same width.
+    if radius != known_radius {
+        let levels = levels_of(radius);
+        known_radius = radius;
+        known_density = density_at(g, levels.low);
+        if levels.part > 0.0 {
+            known_density = mix(known_density, density_at(g, levels.low + 1), levels.part);
+        }
+    }
+    return budget_weight(budget, scale * known_density, width);
 }
 #endif
 
 // A packed crack as wide and as strong as it is to be. `bend`: how its line leaves it.
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
+    if packed == 0u {
+        return 0u;
+    }
     let g = line_pass.grid;
     let w = line_pass.weight;
     var source = crack;
@@ -249,7 +280,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 #endif
 #ifdef BUDGET
     let width = 2.0 * unpack_width(packed >> 20u) * factor;
-    factor *= budget_weight(w.budget, density, width);
+    factor *= crowd_weight(g, width);
 #endif
     var fog = 0.0;
 #ifdef FOG
@@ -269,7 +300,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let fainter = crease_factor(line_pass.simplification, texel_depth(owner, 0), object_at(owner));
     left.y *= select(1.0, fainter, (packed & CREASE) != 0u);
 #endif
-    return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
+    return weighted_crack(packed, left.x, left.y);
 }
 #endif
 
@@ -389,7 +420,8 @@ fn settle(
 #endif
     let g = line_pass.grid;
 #ifdef BUDGET
-    density = density_around(g, cell);
+    middle_of_cell = vec2<f32>(cell) + 0.5 * vec2(f32(COLUMNS), f32(CELL_ROWS));
+    known_radius = -1.0;
 #endif
     for (var column = 0; column < COLUMNS; column++) {
         if cell.x + column >= g.rect.z {

@@ -6,11 +6,16 @@ use bevy::render::render_resource::{
 
 use super::{
     inputs::Inputs,
-    ready::{Ready, ReadyLives},
+    ready::{Ready, ReadyDensities, ReadyLives},
 };
 use crate::{
     diagnostics::SkipReason,
-    lines::{cracks::CrackBuffers, key::LineKey, passes::CellPasses, prepare::Cracks},
+    lines::{
+        cracks::{CrackBuffers, LineDensities},
+        key::LineKey,
+        passes::CellPasses,
+        prepare::Cracks,
+    },
 };
 
 type Compute<'a> = Ready<'a, ComputePipeline>;
@@ -67,10 +72,27 @@ impl Inputs<'_> {
         passes.bridge.map(pass).transpose()
     }
 
+    /// The passes that measure how densely lines lie, if there are any.
+    pub(super) fn measure_passes<'a>(
+        &'a self,
+        passes: &CellPasses,
+        cracks: &'a Cracks,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<ReadyDensities<'a>>, SkipReason> {
+        let (Some([fine, coarse]), Some(densities)) = (passes.measure, &cracks.densities) else {
+            return Ok(None);
+        };
+        let planes = buffers.planes_entry(self.request.copies());
+        let entries = [planes, densities.entry()];
+        let pass = |id| self.compute(id, &LineKey::measure_layout(), &entries);
+        Ok(Some(([pass(fine)?, pass(coarse)?], densities)))
+    }
+
     /// The pass that completes cracks, if there is one.
     pub(super) fn settle_pass(
         &self,
         passes: &CellPasses,
+        cracks: &Cracks,
         buffers: &CrackBuffers,
     ) -> Result<Option<Compute<'_>>, SkipReason> {
         let Some(id) = passes.settle else {
@@ -78,6 +100,7 @@ impl Inputs<'_> {
         };
         let key = self.passes.key.for_settle();
         let mut entries = buffers.settle_entries(self.request.copies());
+        entries.extend(cracks.densities.as_ref().map(LineDensities::entry));
         entries.extend(self.entries(key)?);
         Ok(Some(self.in_cells(id, &key.settle_layout(), &entries)?))
     }

@@ -260,7 +260,8 @@ impl Inputs<'_> {
                     join: self.join_pass(&passes, buffers)?,
                     persist: self.persist_pass(&passes, buffers)?,
                     bridge: self.bridge_pass(&passes, buffers)?,
-                    settle: self.settle_pass(&passes, buffers)?,
+                    measure: self.measure_passes(&passes, cracks, buffers)?,
+                    settle: self.settle_pass(&passes, cracks, buffers)?,
                     ends: self.ends_pass(&passes, cracks)?,
                 }))
             }

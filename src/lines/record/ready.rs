@@ -11,7 +11,7 @@ use bevy::render::{
 use crate::{
     gpu::{attachment, compute_pass},
     lines::{
-        cracks::CrackBuffers,
+        cracks::{CrackBuffers, LineDensities},
         draw::StrokeList,
         memory::LineLives,
         request::{LineRequest, WORKGROUP, blocks},
@@ -26,6 +26,9 @@ pub(super) type Ready<'a, P> = (&'a P, BindGroup);
 /// The pass that keeps the lines of the last frames, ready to be recorded.
 pub(super) type ReadyLives<'a> = (Ready<'a, ComputePipeline>, &'a LineLives);
 
+/// The passes that measure how densely lines lie, ready to be recorded.
+pub(super) type ReadyDensities<'a> = ([Ready<'a, ComputePipeline>; 2], &'a LineDensities);
+
 /// The pass that draws strokes beyond loose ends, ready to be recorded.
 pub(super) type ReadyStrokes<'a> = (Ready<'a, RenderPipeline>, &'a StrokeList);
 
@@ -38,6 +41,7 @@ pub(super) struct ReadyCells<'a> {
     pub join: Option<Ready<'a, ComputePipeline>>,
     pub persist: Option<ReadyLives<'a>>,
     pub bridge: Option<Ready<'a, ComputePipeline>>,
+    pub measure: Option<ReadyDensities<'a>>,
     pub settle: Option<Ready<'a, ComputePipeline>>,
     pub ends: Option<Ready<'a, ComputePipeline>>,
 }
@@ -62,6 +66,9 @@ impl ReadyCells<'_> {
             let copies = self.link.len() + usize::from(self.join.is_some());
             self.buffers.copy_planes(encoder, copies % 2);
             self.dispatch(encoder, "comics_bridge_lines", bridge);
+        }
+        if let Some((passes, densities)) = &self.measure {
+            densities.measure(encoder, passes);
         }
         if let Some(settle) = &self.settle {
             self.dispatch(encoder, "comics_settle_lines", settle);

@@ -14,7 +14,9 @@ use crate::{
     depth::view::ViewUniform,
     lines::{
         modifiers::{LineFadeUniform, LineLayers, LineSimplification, SheetUniform},
-        settings::{BoilUniform, FogUniform, LinesUniform, MapJumps, Outlines, WeightUniform},
+        settings::{
+            BoilUniform, FogUniform, LineEdge, LinesUniform, MapJumps, Outlines, WeightUniform,
+        },
     },
 };
 
@@ -146,9 +148,10 @@ impl LineRequest {
     /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
     pub fn search(&self) -> Search {
         let reach = self.reach as f32 * self.view.depth_scale.min_element();
-        if self.grid_reach() == 1 {
+        let hard = self.settings.edge == LineEdge::Hard;
+        if self.grid_reach() == 1 && !hard {
             Search::Neighbours
-        } else if reach < 2.0 {
+        } else if reach < 2.0 || hard {
             Search::Around
         } else {
             Search::Columns
@@ -159,7 +162,7 @@ impl LineRequest {
         let scale = self.view.depth_scale;
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
         // In columns, and where lines leave their cracks, cracks half a pixel further away count.
-        let beyond = self.settings.smooth && self.search() != Search::Neighbours;
+        let beyond = self.settings.is_smooth() && self.search() != Search::Neighbours;
         let reach = self.grid_reach() + i32::from(beyond);
         let read = self.line_reach + self.boil.amplitude;
         let read = (read * scale.max_element() + self.extension).ceil() as i32;
@@ -176,7 +179,7 @@ impl LineRequest {
             from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
             reach,
             // Smooth lines leave their cracks by half a pixel.
-            inked: (reach + 1 + i32::from(self.settings.smooth) + read)
+            inked: (reach + 1 + i32::from(self.settings.is_smooth()) + read)
                 .max(jumps.radius.ceil() as i32),
             jump_least: jumps.least,
             jump_radius: jumps.radius.ceil(),

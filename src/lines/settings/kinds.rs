@@ -126,6 +126,15 @@ pub struct Creases {
 }
 
 impl Creases {
+    pub(crate) const DEFAULT: Self = Self {
+        equations: Equations::Corrected,
+        angle: 40.0,
+        edge_limit: 0.5,
+        softness: 0.5,
+        color: Color::BLACK,
+        opacity: 1.0,
+    };
+
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
@@ -141,14 +150,7 @@ impl Creases {
 
 impl Default for Creases {
     fn default() -> Self {
-        Self {
-            equations: Equations::Corrected,
-            angle: 40.0,
-            edge_limit: 0.5,
-            softness: 0.5,
-            color: Color::BLACK,
-            opacity: 1.0,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -169,6 +171,11 @@ pub struct ObjectEdges {
 }
 
 impl ObjectEdges {
+    pub(crate) const DEFAULT: Self = Self {
+        color: Color::BLACK,
+        opacity: 1.0,
+    };
+
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
@@ -178,10 +185,7 @@ impl ObjectEdges {
 
 impl Default for ObjectEdges {
     fn default() -> Self {
-        Self {
-            color: Color::BLACK,
-            opacity: 1.0,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -208,6 +212,20 @@ impl LineResponse {
             Self::Both => [1.0, 1.0],
         }
     }
+}
+
+/// Which pixels a line inks.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+pub enum LineEdge {
+    /// Those that it covers, each by the part that it covers.
+    #[default]
+    Smooth,
+    /// Whole pixels, as in pixel art: those next to an edge, on the side of the surface that hides
+    /// the other one, and as many more inwards as the line is wide, in whole physical pixels of at
+    /// least 1. Where no surface hides the other one, lines run on one side all along. Such lines
+    /// are not smooth, do not overshoot, and look as they should with `Msaa::Off`.
+    Hard,
 }
 
 /// The responses at which ink begins and at which it is full. `weakest`: the response from

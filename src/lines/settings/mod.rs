@@ -4,14 +4,16 @@ mod boil;
 mod color;
 mod fog;
 mod kinds;
+mod map_jumps;
 mod outlines;
 mod weight;
 
 pub use boil::LineBoil;
 pub use color::LineColor;
 pub use fog::LineFog;
-pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
-pub use outlines::{MapJumps, Outlines};
+pub use kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes};
+pub use map_jumps::MapJumps;
+pub use outlines::Outlines;
 pub use weight::LineWeight;
 
 pub(crate) use boil::BoilUniform;

@@ -12,7 +12,7 @@ use super::{
     boil::LineBoil,
     color::LineColor,
     fog::LineFog,
-    kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
+    kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
 };
 use crate::{
@@ -92,6 +92,8 @@ pub struct Outlines {
     /// Whether lines run straight through the steps of pixels; otherwise they follow the
     /// borders of pixels. Needs compute shaders. Default: `true`.
     pub smooth: bool,
+    /// Which pixels a line inks. Default: [`LineEdge::Smooth`].
+    pub edge: LineEdge,
     /// By how much lines go on beyond their loose ends, in their direction there, as strokes of a
     /// draughtsman do; in logical pixels. A stroke is at most as long as its line. Closed lines
     /// and lines that meet others have no loose ends. With `weight.taper`, lines become thinner
@@ -102,9 +104,10 @@ pub struct Outlines {
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
-    /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
-    /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
-    /// keeps its width. Faithful lines have no budget. Needs compute shaders.
+    /// distance: there they are thinner, and below 0.6 physical pixels fainter. The area reaches
+    /// `2 * width / ink_budget` far from a line, at least 16 and at most 1024 physical pixels, and
+    /// its middle counts most. So a line that is alone keeps its width, and so do a pair, a
+    /// crossing or a branch. Faithful lines have no budget. Needs compute shaders.
     /// Range 0.05 to 1 (no limit), default 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub ink_budget: f32,
@@ -152,6 +155,7 @@ impl Outlines {
         overshoot: 0.0,
         response: LineResponse::Width,
         smooth: true,
+        edge: LineEdge::Smooth,
         weight: LineWeight::EVEN,
         ink_budget: 0.35,
         boil: LineBoil::STILL,
@@ -163,6 +167,27 @@ impl Outlines {
     /// Silhouettes only, the one kind that \[CL\] 3.2 implements, with the corrected equations.
     pub const SILHOUETTES: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
+        ..Self::NONE
+    };
+
+    /// Lines of pixel art: black pixels on one side of each edge, without greys, for a camera with
+    /// `Msaa::Off` that draws to a small image.
+    pub const PIXELS: Self = Self {
+        silhouettes: Some(Silhouettes {
+            softness: 0.0,
+            ..Silhouettes::DEFAULT
+        }),
+        creases: Some(Creases {
+            softness: 0.0,
+            ..Creases::DEFAULT
+        }),
+        objects: Some(ObjectEdges::DEFAULT),
+        width: 1.0,
+        hysteresis: 0.0,
+        min_length: 1,
+        smooth: false,
+        edge: LineEdge::Hard,
+        ink_budget: 1.0,
         ..Self::NONE
     };
 }
@@ -237,9 +262,14 @@ impl Outlines {
         self.hold_frames > 0 && self.hysteresis > 0.0
     }
 
+    /// Whether lines run straight through the steps of pixels.
+    pub(crate) fn is_smooth(&self) -> bool {
+        self.smooth && self.edge == LineEdge::Smooth
+    }
+
     /// Whether loose ends of lines are extended.
     pub(crate) fn overshoots(&self) -> bool {
-        self.overshoot > 0.0 && self.smooth
+        self.overshoot > 0.0 && self.is_smooth()
     }
 
     /// By how much loose ends are extended, in pixels of the grid, of which there are `scale`
@@ -312,7 +342,10 @@ impl Outlines {
             return 0;
         }
         let half_width = 0.5 * widest * scale;
-        reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width)))
+        match self.edge {
+            LineEdge::Smooth => reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width))),
+            LineEdge::Hard => (2.0 * half_width.min(LARGEST_HALF_WIDTH)).round() as i32,
+        }
     }
 
     /// Width in logical pixels of the widest line that there can be; the parameters are those
@@ -389,27 +422,6 @@ impl Outlines {
             unused_x: 0.0,
             unused_y: 0.0,
             unused_z: 0.0,
-        }
-    }
-}
-
-/// Places where the depth map D departs from planes. At other places, every two opposite
-/// neighbours at the same distance, at most `radius`, have D less than `least` away from
-/// a plane through the pixel between them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapJumps {
-    /// Smallest departure of D that counts.
-    pub least: f32,
-    /// Largest distance in physical pixels.
-    pub radius: f32,
-}
-
-impl MapJumps {
-    /// Places that satisfy either of two conditions.
-    pub(crate) fn or(self, other: Self) -> Self {
-        Self {
-            least: self.least.min(other.least),
-            radius: self.radius.max(other.radius),
         }
     }
 }

@@ -52,8 +52,10 @@ pub(crate) struct TileLists {
     arguments: Buffer,
     /// The lists, one after the other, each with room for all tiles.
     tiles: Buffer,
-    /// Of each tile, the number of frames since it had cracks nearby.
-    ages: Buffer,
+    /// Of each tile of the viewport, the number of frames for which it is still drawn.
+    frames_left: Buffer,
+    /// Size of the viewport in pixels.
+    size: UVec2,
     /// Number of tiles that a list has room for.
     room: u32,
     /// The arguments of an indirect dispatch for the cells, and their number.
@@ -68,7 +70,8 @@ fn most_tiles(request: &LineRequest) -> UVec2 {
 }
 
 impl TileLists {
-    /// Empty lists for this request; the buffers of `before` are used again if they fit.
+    /// Empty lists for this request; the buffers of `before` are used again if they fit and the
+    /// viewport has the same size. In new ones, no tile is drawn any longer.
     pub fn new(
         before: Option<Self>,
         (device, queue): (&RenderDevice, &RenderQueue),
@@ -77,7 +80,9 @@ impl TileLists {
         let tiles = most_tiles(request);
         let room = tiles.x * tiles.y;
         let lists = before
-            .filter(|lists| is_reused(u64::from(lists.room), u64::from(room)))
+            .filter(|lists| {
+                lists.size == request.size && is_reused(u64::from(lists.room), u64::from(room))
+            })
             .unwrap_or_else(|| {
                 let buffer =
                     |label, size, usage| buffer(device, label, size, usage | BufferUsages::STORAGE);
@@ -86,11 +91,12 @@ impl TileLists {
                 Self {
                     arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
                     tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
-                    ages: buffer(
-                        "comics_tile_ages",
+                    frames_left: buffer(
+                        "comics_tile_frames",
                         4 * u64::from(room),
                         BufferUsages::empty(),
                     ),
+                    size: request.size,
                     room,
                     cell_counts: buffer("comics_cell_counts", ARGUMENTS, drawn),
                     cells: buffer(
@@ -121,7 +127,11 @@ impl TileLists {
 
     /// The bindings of `tiles.wgsl`.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 3] {
-        let buffers = [(14, &self.arguments), (15, &self.tiles), (31, &self.ages)];
+        let buffers = [
+            (14, &self.arguments),
+            (15, &self.tiles),
+            (31, &self.frames_left),
+        ];
         buffers.map(|(binding, buffer)| entry(binding, buffer.as_entire_binding()))
     }
 

@@ -11,8 +11,8 @@
 // The lists, one after the other: left, top, right, bottom in clip space.
 @group(0) @binding(15) var<storage, read_write> tiles: array<vec4<f32>>;
 
-// Of each tile, the number of frames since it had cracks nearby.
-@group(0) @binding(31) var<storage, read_write> ages: array<u32>;
+// Of each tile, the number of frames for which it is drawn, this one included.
+@group(0) @binding(31) var<storage, read_write> frames_left: array<u32>;
 
 // TileList of tiles.rs.
 const INKED: u32 = 0u;
@@ -47,9 +47,9 @@ fn list_tiles(@builtin(global_invocation_id) id: vec3<u32>) {
         // Lines that are missing in this frame are still remembered.
         let across = u32(size.x + TILE - 1) / u32(TILE);
         let tile = id.y * across + id.x;
-        let age = select(min(ages[tile], 65535u) + 1u, 0u, listed);
-        ages[tile] = age;
-        listed = age <= remembered;
+        let left = select(max(frames_left[tile], 1u) - 1u, remembered + 1u, listed);
+        frames_left[tile] = left;
+        listed = left > 0u;
     }
     if !listed {
         return;

@@ -30,6 +30,7 @@ fn finding() -> Vec<Variant> {
         "| COMPLETED",
         "| OBJECT_STYLES",
         "| SIMPLIFIED_LINES | SIMPLIFIED_LINES OBJECT_DEPTHS",
+        "| HARD",
     ];
     const FAITHFUL: &[&str] = &[
         "| OBLIQUE",
@@ -136,6 +137,7 @@ fn completing() -> Vec<Variant> {
     [
         each("lines/draw/columns.wgsl", STORES),
         each("lines/link/link.wgsl", &["", "LAST"]),
+        each("lines/link/density.wgsl", &["", "COARSE"]),
         each("lines/link/join.wgsl", &[""]),
         each("lines/link/bridge.wgsl", &[""]),
         each("lines/tiles/tiles.wgsl", &[""]),
@@ -221,7 +223,7 @@ fn drawing() -> Vec<Variant> {
         "| STREAKS",
     ];
     const LISTS: &[&str] = &[
-        "| NEIGHBOURS | COLUMNS",
+        "| NEIGHBOURS | COLUMNS | HARD",
         "| BLOCKS | BLOCKS COMPLETED | BLOCKS COMPLETED SMOOTH",
         "| VARIED",
         "| OBJECT_STYLES",
@@ -261,12 +263,13 @@ fn with_ids(mut names: Vec<&'static str>) -> Vec<&'static str> {
 }
 
 fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
-    let columns = has(&names, "COLUMNS");
+    let [columns, hard] = ["COLUMNS", "HARD"].map(|name| has(&names, name));
     let owners = has_any(&names, &["OBJECT_STYLES", "SURFACE"]);
     let [blocks, completed] = ["BLOCKS", "COMPLETED"].map(|name| has(&names, name));
     names.retain(|name| match *name {
         // The columns were searched with them.
-        "COMPLETED" | "SMOOTH" => !columns,
+        "COMPLETED" => !columns,
+        "SMOOTH" => !columns && !hard,
         "VARIED" => completed && !columns,
         "BRIDGED" => owners && blocks,
         _ => true,

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::{
     bend::stored as stored_bend,
     boil::boiled,
-    budget::{budget_weight, line_density},
+    budget::Densities,
     chain::cracks_to_ends,
     coverage::disc_coverage,
     crack::{Crack, SIDES, crack, jump, stored_byte},
@@ -113,6 +113,7 @@ impl Cracks {
         let taper = self.taper;
         let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
         let w = &s.weight;
+        let densities = (s.ink_budget < 1.0).then(|| Densities::new(linked, [width, height]));
         let varies = w.shade > 0.0
             || w.lit > 0.0
             || w.perspective > 0.0
@@ -133,10 +134,9 @@ impl Cracks {
                     let stroke = stroke.min((ends[0] + ends[1] + 1) as f64);
                     factor *= taper_weight(taper, ends[0].min(ends[1]) as f64 + stroke);
                 }
-                if s.ink_budget < 1.0 {
-                    let density = line_density(linked, pixel);
+                if let Some(densities) = &densities {
                     let width = 2.0 * crack.half_width * factor;
-                    factor *= budget_weight(f64::from(s.ink_budget), density, width);
+                    factor *= densities.budget_weight(f64::from(s.ink_budget), pixel, width);
                 }
                 *slot = weighted(crack, factor);
             }

@@ -1,0 +1,58 @@
+//! Where it is stored how densely the lines of a view lie.
+
+use bevy::{
+    math::{UVec2, UVec4, Vec4Swizzles},
+    render::{
+        render_resource::{
+            BindGroup, BindGroupEntry, Buffer, BufferUsages, CommandEncoder, ComputePipeline,
+        },
+        renderer::RenderDevice,
+    },
+};
+
+use crate::gpu::{buffer, compute_pass, entry};
+
+/// Pixels along the sides of the squares that a workgroup of `density.wgsl` begins with: 8 x 8
+/// squares, of 8 pixels and then of 64.
+const GROUPS: [u32; 2] = [64, 512];
+/// Pixels along the side of the smallest squares.
+const SQUARE: u32 = 8;
+
+/// The lengths of lines per area in squares of 8 to 512 pixels, see `budget.wgsl`.
+pub(crate) struct LineDensities {
+    buffer: Buffer,
+    /// Size of the grid in pixels.
+    size: UVec2,
+}
+
+impl LineDensities {
+    /// Densities for a rectangle; the buffer of `before` is used again if it is large enough.
+    pub fn new(before: Option<Self>, device: &RenderDevice, rect: UVec4) -> Self {
+        let size = rect.zw();
+        let squares = |pixels: u32| u64::from(pixels.div_ceil(SQUARE).max(1));
+        // See `square_index`.
+        let bytes = 4 * squares(size.x) * (2 * squares(size.y) + 8);
+        let before = before.map(|before| before.buffer);
+        let buffer = before
+            .filter(|buffer| buffer.size() >= bytes)
+            .unwrap_or_else(|| buffer(device, "comics_densities", bytes, BufferUsages::STORAGE));
+        Self { buffer, size }
+    }
+
+    pub fn entry(&self) -> BindGroupEntry<'_> {
+        entry(33, self.buffer.as_entire_binding())
+    }
+
+    /// Records both passes of `density.wgsl`.
+    pub fn measure(
+        &self,
+        encoder: &mut CommandEncoder,
+        passes: &[(&ComputePipeline, BindGroup); 2],
+    ) {
+        for ((pipeline, group), side) in passes.iter().zip(GROUPS) {
+            let mut pass = compute_pass(encoder, "comics_measure_lines", (pipeline, group), &[]);
+            let groups = (self.size + side - 1) / side;
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Lines of pixel art: whole pixels of ink, one pixel wide.
+
+use std::f32::consts::FRAC_PI_4;
+
+use image::{Rgba, RgbaImage};
+
+use crate::{
+    prelude::*,
+    walls::{towards_the_sky, wall},
+};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+const INK: Rgba<u8> = Rgba([0, 0, 0, 255]);
+
+/// An orthographic view of a ball, a box, a slanted plate, and two plates that touch. `flip`: -1 for
+/// the mirrored scene.
+fn scene(flip: f32) -> Small {
+    let mut small = towards_the_sky(SIZE);
+    let mut put = |mesh: Mesh, color: Color, at: Vec3, turned: Quat| {
+        let turned = Quat::from_xyzw(turned.x, flip * turned.y, flip * turned.z, turned.w);
+        let at = Transform::from_xyz(flip * at.x, at.y, at.z).with_rotation(turned);
+        small.put(mesh, unlit(color), at);
+    };
+    let ball = Sphere::new(17.3).mesh().uv(64, 32);
+    put(
+        ball,
+        Color::srgb(0.8, 0.3, 0.3),
+        Vec3::new(-46.2, 15.1, -100.0),
+        Quat::IDENTITY,
+    );
+    put(
+        Cuboid::new(31.0, 24.0, 27.0).into(),
+        Color::srgb(0.4, 0.7, 0.4),
+        Vec3::new(3.3, -4.2, -120.0),
+        // One edge between the visible sides.
+        Quat::from_rotation_z(0.3) * Quat::from_rotation_x(0.7),
+    );
+    let plate = |width, height| Rectangle::new(width, height).into();
+    put(
+        plate(29.0, 21.0),
+        Color::srgb(0.3, 0.4, 0.8),
+        Vec3::new(50.2, 18.3, -110.0),
+        Quat::from_rotation_z(0.4),
+    );
+    for (x, blue) in [(45.2, 0.2), (57.2, 0.3)] {
+        put(
+            plate(12.0, 20.0),
+            Color::srgb(0.8, 0.7, blue),
+            Vec3::new(x, -22.3, -110.0),
+            Quat::IDENTITY,
+        );
+    }
+    small
+}
+
+fn colors(picture: &RgbaImage) -> HashSet<Rgba<u8>> {
+    picture.pixels().copied().collect()
+}
+
+fn is_ink(picture: &RgbaImage, x: u32, y: u32) -> bool {
+    *picture.get_pixel(x, y) == INK
+}
+
+/// Truth: the picture has the flat colours and one more, that of ink. No ink is lighter, and no
+/// other pixel is changed.
+#[test]
+fn pixels_are_ink_or_as_they_were() {
+    let mut small = scene(1.0);
+    small.settle();
+    let flat = small.picture();
+    let inked = small.outlined(Outlines::PIXELS);
+    assert_eq!(colors(&inked).len(), colors(&flat).len() + 1);
+    let mut count = 0;
+    for (before, now) in flat.pixels().zip(inked.pixels()) {
+        count += usize::from(*now == INK);
+        assert!(*now == INK || now == before, "{before:?} -> {now:?}");
+    }
+    // The outlines of five shapes.
+    assert!((300..600).contains(&count), "{count}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Truth: the picture of the mirrored scene is the mirrored picture.
+#[test]
+fn the_mirrored_scene_has_the_mirrored_picture() {
+    let [picture, mirrored] = [1.0, -1.0].map(|flip| scene(flip).outlined(Outlines::PIXELS));
+    let differ =
+        |(x, y): &(u32, u32)| picture.get_pixel(*x, *y) != mirrored.get_pixel(SIZE.x - 1 - x, *y);
+    let pixels = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
+    let off: Vec<_> = pixels.filter(differ).collect();
+    assert!(off.is_empty(), "{off:?}");
+}
+
+/// Truth: a lone line has no block of 2 x 2 pixels of ink, whatever its direction, and all of its
+/// pixels touch, at least at their corners.
+#[test]
+fn lone_lines_are_one_pixel_wide() {
+    let mut small = towards_the_sky(SIZE);
+    for turn in 0..8 {
+        small.clear();
+        let angle = FRAC_PI_4 * (turn as f32 + 0.37) / 4.0;
+        let at = Transform::from_xyz(3.3, 1.2, -100.0);
+        let at = at.with_rotation(Quat::from_rotation_z(angle));
+        small.put(Rectangle::new(91.0, 47.0), unlit(Color::WHITE), at);
+        let picture = small.outlined(Outlines::PIXELS);
+        let ink = |x: i32, y: i32| is_ink(&picture, x as u32, y as u32);
+        let inner =
+            || (1..SIZE.y as i32 - 1).flat_map(|y| (1..SIZE.x as i32 - 1).map(move |x| (x, y)));
+        for (x, y) in inner().filter(|(x, y)| ink(*x, *y)) {
+            let block = ink(x + 1, y) && ink(x, y + 1) && ink(x + 1, y + 1);
+            assert!(!block, "{angle}: a block at {x}, {y}");
+            let around = (-1..2).flat_map(|dy| (-1..2).map(move |dx| (x + dx, y + dy)));
+            let touching = around.filter(|(x, y)| ink(*x, *y)).count() - 1;
+            assert!(touching >= 2, "{angle}: a loose end at {x}, {y}");
+        }
+    }
+}
+
+/// Truth: wider lines grow inwards by whole pixels.
+#[test]
+fn wide_lines_grow_inwards() {
+    let mut small = towards_the_sky(SIZE);
+    wall(&mut small, [-40.0, -30.0], [40.0, 30.0], 100.0);
+    for (width, pixels) in [(1.0, 1), (1.4, 1), (2.0, 2), (3.0, 3), (8.0, 8)] {
+        let picture = small.outlined(Outlines {
+            width,
+            ..Outlines::PIXELS
+        });
+        let row: Vec<u32> = (0..SIZE.x).filter(|x| is_ink(&picture, *x, 45)).collect();
+        let want: Vec<u32> = (40..40 + pixels).chain(120 - pixels..120).collect();
+        assert_eq!(row, want, "{width} px: a row");
+        let column: Vec<u32> = (0..SIZE.y).filter(|y| is_ink(&picture, 80, *y)).collect();
+        let want: Vec<u32> = (15..15 + pixels).chain(75 - pixels..75).collect();
+        assert_eq!(column, want, "{width} px: a column");
+    }
+}
+
+/// Truth: a line where nothing hides is on one side of the edge all along.
+#[test]
+fn creases_run_on_one_side() {
+    let mut small = towards_the_sky(SIZE);
+    let at = Transform::from_xyz(3.3, -4.2, -120.0)
+        .with_rotation(Quat::from_rotation_z(0.3) * Quat::from_rotation_x(0.7));
+    small.put(Cuboid::from_length(50.0), unlit(Color::WHITE), at);
+    let picture = small.outlined(Outlines {
+        silhouettes: None,
+        objects: None,
+        ..Outlines::PIXELS
+    });
+    let normals = small.normals().expect("normals").pixels;
+    let pixels = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
+    let inked: Vec<_> = pixels.filter(|(x, y)| is_ink(&picture, *x, *y)).collect();
+    assert!((40..60).contains(&inked.len()), "{}", inked.len());
+    // The upper side.
+    for (x, y) in inked {
+        let up = normals[(y * SIZE.x + x) as usize][1];
+        assert!(up > 0.5, "{x}, {y}");
+    }
+}
