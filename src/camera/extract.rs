@@ -70,15 +70,14 @@ pub(super) fn extract_views(
         seen.insert(render_entity);
         let mut view = commands.entity(render_entity);
         #[cfg(feature = "objects")]
-        let fades = fade_levels(
+        fade_levels(
             &mut view,
             &asked.plan,
             (&levels, &level_places),
             places.get(entity).ok(),
         );
-        #[cfg(not(feature = "objects"))]
-        let fades = false;
-        let writes = fades || !writes.cutoffs.is_empty();
+        // For as long as a mesh may fade: its coming and going would queue all meshes anew.
+        let writes = asked.plan.fades || !writes.cutoffs.is_empty();
         want_objects(&mut view, (entity, &asked.plan), writes);
         view.insert(ViewPlan {
             camera: entity,
@@ -96,7 +95,7 @@ pub(super) fn extract_views(
             #[cfg(feature = "objects")]
             backdrop: (places.get(entity).ok())
                 .filter(|_| asked.plan.beyond != BeyondPrepass::Styled)
-                .and_then(|at| nearest_backdrop(&backdrops, &boxes, at.translation())),
+                .and_then(|at| nearest_backdrop(&backdrops, &boxes, (at, &clip_from_view))),
             #[cfg(not(feature = "objects"))]
             backdrop: None,
             cuts: cuts.map_or(0, |cuts| cuts.0),
@@ -111,28 +110,22 @@ pub(super) fn extract_views(
     }
 }
 
-/// Notes the meshes that fade in a view; returns whether there are any.
+/// Notes the meshes that fade in a view.
 #[cfg(feature = "objects")]
 fn fade_levels(
     view: &mut EntityCommands,
     plan: &Plan,
     (levels, places): (&Levels, &LevelPlaces),
     at: Option<&GlobalTransform>,
-) -> bool {
+) {
     let fading = at
         .filter(|_| plan.fades && plan.needs_depth())
         .map(|at| levels.fading(at.translation(), places))
         .filter(|fading| !fading.is_empty());
     match fading {
-        Some(fading) => {
-            view.insert(FadingMeshes(fading));
-            true
-        }
-        None => {
-            view.remove::<FadingMeshes>();
-            false
-        }
-    }
+        Some(fading) => view.insert(FadingMeshes(fading)),
+        None => view.remove::<FadingMeshes>(),
+    };
 }
 
 /// The world position that effects point at.

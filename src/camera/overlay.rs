@@ -9,6 +9,7 @@ use bevy::{
     color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::{
+        change_detection::Ref,
         component::Component,
         entity::Entity,
         hierarchy::ChildOf,
@@ -19,10 +20,10 @@ use bevy::{
         schedule::IntoScheduleConfigs,
         system::{Commands, Query},
     },
-    prelude::DetectChangesMut,
+    prelude::{DetectChanges, DetectChangesMut},
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{render_resource::BlendState, view::Msaa},
-    transform::components::Transform,
+    transform::{TransformSystems, components::Transform},
 };
 
 /// The settings of a camera that draws over the finished picture of the cameras before it, and may
@@ -67,6 +68,9 @@ pub fn overlay_camera(order: isize) -> Camera {
 /// layers, and not in those of the camera itself: for gizmos, by
 /// `GizmoConfig::render_layers`.
 ///
+/// A game that asks for its only camera finds two: give its own camera a marker. Bevy UI is drawn by the camera
+/// of the highest order, unless one has `IsDefaultUiCamera`.
+///
 /// Default: layer 1.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]
 #[require(Camera3d)]
@@ -86,8 +90,8 @@ struct OverlayOf(Entity);
 /// What an overlay has in common with its camera.
 type Copied<'w> = (
     &'w Camera,
-    &'w Projection,
-    &'w RenderTarget,
+    Ref<'w, Projection>,
+    Ref<'w, RenderTarget>,
     &'w Msaa,
     Option<&'w Hdr>,
     (Option<&'w Tonemapping>, Option<&'w DebandDither>),
@@ -122,7 +126,7 @@ fn update_overlays(
     mut overlays: Query<
         (
             Entity,
-            &OverlayOf,
+            Ref<OverlayOf>,
             (&mut Camera, &mut Projection, &mut RenderTarget),
             (&mut Msaa, &mut RenderLayers, Option<&Hdr>),
             (&mut Tonemapping, &mut DebandDither),
@@ -142,8 +146,14 @@ fn update_overlays(
             (camera.order, camera.is_active) = (order, own.is_active);
         }
         camera.viewport.clone_from(&own.viewport);
-        projection.clone_from(own_projection);
-        target.clone_from(own_target);
+        camera.sub_camera_view.clone_from(&own.sub_camera_view);
+        camera.invert_culling = own.invert_culling;
+        if own_projection.is_changed() || of.is_added() {
+            projection.clone_from(&own_projection);
+        }
+        if own_target.is_changed() || of.is_added() {
+            target.clone_from(&own_target);
+        }
         msaa.set_if_neq(*own_msaa);
         layers.set_if_neq(overlay.0.clone());
         color.0.set_if_neq(tonemapping.copied().unwrap_or_default());
@@ -177,6 +187,7 @@ pub(super) fn build(app: &mut App) {
             PostUpdate,
             (spawn_overlays, update_overlays)
                 .chain()
-                .before(CameraUpdateSystems),
+                .before(CameraUpdateSystems)
+                .before(TransformSystems::Propagate),
         );
 }

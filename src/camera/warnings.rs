@@ -5,7 +5,7 @@ use bevy::{
     color::Alpha,
     ecs::{
         entity::Entity,
-        query::{Changed, With},
+        query::With,
         reflect::AppTypeRegistry,
         system::{Query, Res},
         world::EntityRef,
@@ -58,7 +58,7 @@ const FOGS: [&str; 2] = [
 
 /// Warns about components of the engine that do not go together with a camera's effects.
 pub(super) fn warn_of_pairs(
-    cameras: Query<EntityRef, Changed<CameraPlan>>,
+    cameras: Query<EntityRef, With<CameraPlan>>,
     types: Option<Res<AppTypeRegistry>>,
 ) {
     let Some(types) = types.filter(|_| !cameras.is_empty()) else {
@@ -74,8 +74,7 @@ pub(super) fn warn_of_pairs(
         let lines = plan.and_then(|plan| plan.plan.lines);
         if lines.is_some() && has(&LENS_DISTORTION) {
             warn_once!(
-                "`LensDistortion` on {id} bends the picture before lines are drawn: give it to a second \
-                 camera over the first one"
+                "`LensDistortion` on {id} bends the picture before lines are drawn: they lie beside their edges"
             );
         }
         if is_overlay(camera) && OPAQUE.iter().any(has) {

@@ -24,9 +24,6 @@
 @group(0) @binding(33) var drawn_depth: texture_2d<f32>;
 #endif
 
-// What is nearer than the surface of the prepass by this part of its distance is another surface.
-const NEARER: f32 = 1.002;
-
 // Whether the picture shows something that is not in the prepass, at a pixel and sample of the
 // prepass textures.
 fn is_beyond_prepass(at: vec2<i32>, sample: i32) -> bool {
@@ -36,7 +33,8 @@ fn is_beyond_prepass(at: vec2<i32>, sample: i32) -> bool {
     let drawn = textureLoad(drawn_depth, at, 0).r;
 #endif
     let raw = raw_depth(view.raw, vec2<u32>(at), drawn);
-    return raw > view.backdrop && raw > NEARER * texel_depth(at, sample);
+    let surface = texel_depth(at, sample);
+    return raw > view.backdrop && raw > surface + view.nearer.x * surface + view.nearer.y;
 }
 #endif
 
@@ -44,13 +42,16 @@ fn is_beyond_prepass(at: vec2<i32>, sample: i32) -> bool {
 // Whether the camera has drawn an object where lines at this pixel may come from: half of a line
 // lies outside of its object. Elsewhere, lines are those of what another camera has drawn.
 fn is_near_own(pixel: vec2<i32>) -> bool {
-    var found = false;
-    for (var i = 0; i < 18; i++) {
-        let reach = #{MASK_REACH} / (1 + i / 9);
-        let there = inside_viewport(pixel + reach * (vec2(i % 3, (i / 3) % 3) - 1));
-        found |= texel_object(depth_pixel(there), 0).x != 0u;
+    let reach = #{MASK_REACH};
+    for (var y = -reach; y <= reach; y++) {
+        for (var x = -reach; x <= reach; x++) {
+            let there = inside_viewport(pixel + vec2(x, y));
+            if texel_object(depth_pixel(there), 0).x != 0u {
+                return true;
+            }
+        }
     }
-    return found;
+    return false;
 }
 #endif
 
@@ -85,7 +86,10 @@ fn changed_fractions(pixel: vec2<i32>) -> vec2<f32> {
     }
     let changed = sum / f32(samples);
 #ifdef MASKED_BY_IDS
-    return vec2(changed.x, select(0.0, changed.y, is_near_own(pixel)));
+    if changed.x == 0.0 && !is_near_own(pixel) {
+        return vec2(0.0);
+    }
+    return changed;
 #else
     return changed;
 #endif

@@ -120,6 +120,7 @@ impl DepthMap {
         let map = clamp_fields(self);
         Self {
             mapping: map.mapping.sanitized(),
+            sky_beyond: (map.sky_beyond).filter(|distance| distance.is_finite()),
             smoothing: (map.smoothing)
                 .map(RangeSmoothing::sanitized)
                 .filter(|smoothing| !smoothing.is_negligible()),

@@ -17,7 +17,8 @@ pub(crate) struct ViewUniform {
     pub backdrop: f32,
     /// What belongs at a place is drawn by this much before it, in physical pixels of the viewport.
     pub jitter: Vec2,
-    pub unused: Vec2,
+    /// A surface is in front of another one by this much raw depth: x * that of the other one + y.
+    pub nearer: Vec2,
     pub raw: RawDepth,
     pub depth: DepthFrame,
 }
@@ -38,7 +39,7 @@ impl ViewUniform {
             flip: u32::from(flip),
             backdrop: 0.0,
             jitter: Vec2::ZERO,
-            unused: Vec2::ZERO,
+            nearer: Vec2::ZERO,
             raw,
             depth,
         }

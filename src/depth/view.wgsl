@@ -22,7 +22,8 @@ struct View {
     // What belongs at a place is drawn by this much before it, in physical pixels of the viewport: the jitter of
     // temporal anti-aliasing.
     jitter: vec2<f32>,
-    unused: vec2<f32>,
+    // A surface is in front of another one by this much raw depth: x * that of the other one + y.
+    nearer: vec2<f32>,
     raw: RawDepth,
     depth: DepthFrame,
 }
@@ -83,6 +84,12 @@ fn depth_texel(at: vec2<i32>, sample: i32) -> f32 {
 #else
     return textureLoad(depth_texture, at, 0).r;
 #endif
+}
+
+// Whether something is drawn at a pixel of the depth texture that counts as sky: its normal and id do not
+// count either. See DepthMap::sky_beyond.
+fn is_drawn_sky(at: vec2<i32>) -> bool {
+    return texel_depth(at, 0) <= 0.0;
 }
 
 // Raw depth at a pixel of the depth texture.

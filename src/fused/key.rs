@@ -24,7 +24,7 @@ use super::{
 use crate::{
     composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},
     depth::view::ViewUniform,
-    lines::{ink_entry, owners_entry, range_entry},
+    lines::{Outlines, ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_depths_entry, object_styles_entry},
     samples,
 };
@@ -38,6 +38,8 @@ pub(crate) struct KeyInputs {
     pub samples: Option<u32>,
     pub oblique: bool,
     pub view: ViewUniform,
+    /// The largest line width that an object overrides, in logical pixels.
+    pub widest_object: f32,
 }
 
 /// Everything that is compiled into the fused pass: the effects, their modes and
@@ -127,7 +129,7 @@ impl StylizeKey {
             unstyled_colors: plan.unstyled,
             unstyled_print: plan.unstyled,
             own_pixels: plan.own_pixels,
-            mask_reach: mask_reach(plan, facts),
+            mask_reach: mask_reach(plan, inputs.widest_object, facts),
             beyond: plan.beyond,
             masked_colors: plan.is_masked(),
             masked_print: plan.is_masked(),
@@ -431,14 +433,14 @@ impl StylizeKey {
     }
 }
 
-/// Half the width of the widest line in pixels, rounded up, if [`OwnPixels::Ids`] are read.
-fn mask_reach(plan: &Plan, facts: &EffectContext) -> u32 {
+/// How far the ink of lines may lie from their objects in pixels, if [`OwnPixels::Ids`] are read.
+fn mask_reach(plan: &Plan, widest_object: f32, facts: &EffectContext) -> u32 {
     let lines = plan
         .lines
         .filter(|_| plan.own_pixels == Some(OwnPixels::Ids));
-    lines.map_or(2, |lines| {
-        (0.5 * lines.width * facts.scale_factor).ceil() as u32
-    })
+    let widest = (widest_object, plan.vertex_widths);
+    let reach = |lines: Outlines| lines.reach(facts.scale_factor, widest, facts.sheet);
+    lines.map_or(2, |lines| reach(lines).clamp(1, 32) as u32)
 }
 
 /// The effects that come after prints, where effects change only some pixels; and whether they draw

@@ -320,7 +320,7 @@ impl Plan {
         } else {
             needs
         };
-        let mask = if self.drawn().next().is_some() {
+        let mask = if self.draws() {
             self.mask_needs()
         } else {
             Needs::empty()

@@ -87,6 +87,7 @@ impl Services<'_> {
                 samples: scene.depth.map(|(_, samples)| samples),
                 oblique: view.projection.kind() == ProjectionKind::Oblique,
                 view: uniform,
+                widest_object: view.widest_object,
             };
             self.fused(cache, (plan, view.camera, facts), &inputs, lines.as_ref())
         });
@@ -222,8 +223,12 @@ impl ChosenPart {
     }
 }
 
+/// What is nearer than the surface of the prepass by this part of its distance is another surface.
+const NEARER: f32 = 0.002;
+
 fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
     let nearest = view.backdrop.map(|at| view.projection.raw_depth(at.into()));
+    let reference = view.projection.jump_reference(&view.clip_from_view);
     let uniform = ViewUniform::new(
         scene.viewport,
         scene.main_pass_size,
@@ -233,6 +238,7 @@ fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
     );
     ViewUniform {
         backdrop: nearest.unwrap_or(0.0).max(0.0) as f32,
+        nearer: NEARER * Vec2::from(reference),
         jitter: scene.jitter.unwrap_or_default() / uniform.depth_scale.max(Vec2::splat(1e-6)),
         ..uniform
     }

@@ -13,10 +13,13 @@ use bevy::{
         resource::Resource,
         system::{Query, Res, ResMut},
     },
-    math::{Vec3, Vec3A},
+    math::{Mat4, Vec3},
     mesh::Mesh3d,
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::{Extract, render_phase::ViewBinnedRenderPhases, sync_world::MainEntity},
+    render::{
+        render_phase::ViewBinnedRenderPhases,
+        sync_world::{MainEntity, MainEntityHashSet},
+    },
     transform::components::GlobalTransform,
 };
 
@@ -111,28 +114,53 @@ pub(super) fn remove_backdrops(
 pub(crate) type BackdropBoxes<'w, 's> =
     Query<'w, 's, (&'static Aabb, &'static GlobalTransform), With<Mesh3d>>;
 
-/// A distance from a point below which no backdrop is; `None` without backdrops. That of a dome is taken from its
-/// box.
+/// A distance along the axis of a view below which no backdrop is; `None` without backdrops. That of a dome around the
+/// view is taken from its box.
 pub(crate) fn nearest_backdrop(
     backdrops: &Backdrops,
     boxes: &BackdropBoxes,
-    eye: Vec3,
+    (eye, clip_from_view): (&GlobalTransform, &Mat4),
 ) -> Option<f32> {
+    // The corner of the view with the smallest part of its distance along the axis.
+    let view_from_clip = clip_from_view.inverse();
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+    let along = |(x, y)| {
+        let ray = view_from_clip
+            .project_point3(Vec3::new(x, y, 0.5))
+            .normalize();
+        -ray.z
+    };
+    let along = corners.map(along).into_iter().reduce(f32::min)?;
+    let parallel = clip_from_view.w_axis.w == 1.0;
     let distance = |mesh: Entity| {
         let (aabb, at) = boxes.get(mesh).ok()?;
+        if parallel {
+            return Some(nearest_corner(aabb, at, eye));
+        }
         let (scale, rotation, _) = at.to_scale_rotation_translation();
+        let half = Vec3::from(aabb.half_extents) * scale.abs();
         let centre = at.transform_point(aabb.center.into());
-        let half = aabb.half_extents * Vec3A::from(scale.abs());
-        let from = rotation.inverse() * (eye - centre);
-        let outside = from.abs() - Vec3::from(half);
-        let distance = if outside.max_element() > 0.0 {
-            outside.max(Vec3::ZERO).length()
-        } else {
-            half.min_element() - from.length()
-        };
-        Some(distance.max(0.0))
+        let from = rotation.inverse() * (eye.translation() - centre);
+        let outside = from.abs() - half;
+        if outside.max_element() > 0.0 {
+            return Some(along * outside.max(Vec3::ZERO).length());
+        }
+        // The facets of a dome are nearer than its corners.
+        let inside = half.min_element() - from.length();
+        Some(0.9 * along * inside.max(0.0))
     };
     backdrops.0.keys().filter_map(distance).reduce(f32::min)
+}
+
+/// The distance along the axis of a view to the nearest corner of a box.
+fn nearest_corner(aabb: &Aabb, at: &GlobalTransform, eye: &GlobalTransform) -> f32 {
+    let ahead = eye.forward();
+    let corner = |i: u8| {
+        let side = Vec3::from([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }));
+        let corner = Vec3::from(aabb.center) + side * Vec3::from(aabb.half_extents);
+        ahead.dot(at.transform_point(corner) - eye.translation())
+    };
+    (0..8).map(corner).fold(f32::INFINITY, f32::min)
 }
 
 pub(super) fn build(app: &mut App) {

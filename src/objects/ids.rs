@@ -239,7 +239,7 @@ impl Queue<'_, '_> {
     /// The bin of a mesh that fades: it is drawn whole into the depth that effects read.
     fn fading_bin(&mut self, mesh: MainEntity) -> Option<Result<(Bin, u32), Missing>> {
         let targets = self.key.targets?;
-        let fades = self.phase.fading.contains(&mesh);
+        let fades = self.phase.fading.contains(&mesh) && !self.items.is_backdrop(mesh);
         fades.then(|| self.transparent.fading_bin(mesh, self.key.view, targets))
     }
 
@@ -260,7 +260,8 @@ impl Queue<'_, '_> {
             found = self.transparent.bin(mesh, self.key.view, targets);
         }
         if let Ok((bin, input)) = found {
-            let record = self.records.of(mesh.id(), fading.is_some());
+            let cutoff = fading.and_then(|_| self.transparent.alpha_mask(mesh));
+            let record = self.records.of(mesh.id(), cutoff);
             self.phase.add(bin, Instance::new(mesh, input, record));
         }
         if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
@@ -285,9 +286,6 @@ fn is_visible(class: &RenderVisibleEntitiesClass, mesh: MainEntity) -> bool {
     listed.is_ok() || class.entities_gpu_culling.contains_key(&mesh)
 }
 
-/// The least alpha of meshes with an alpha mask that fade: the default of the engine's materials.
-const MASKED_ALPHA: f32 = 0.5;
-
 /// What is known of objects by their entities.
 #[derive(SystemParam)]
 pub(super) struct Records<'w> {
@@ -302,12 +300,12 @@ pub(super) struct Records<'w> {
 
 impl Records<'_> {
     /// Id, style slot, start of the sections and bits of the least alpha of a mesh.
-    fn of(&mut self, mesh: Entity, fades: bool) -> [u32; 4] {
+    fn of(&mut self, mesh: Entity, alpha_mask: Option<f32>) -> [u32; 4] {
         let slot = self.styles.slots.get(mesh).copied().unwrap_or(0);
         let id = self.ids.give(self.levels.object(self.groups.object(mesh)));
         let start = self.sections.get(mesh).unwrap_or(0);
         let cutoff = self.writes.cutoffs.get(mesh);
-        let cutoff = cutoff.copied().or(fades.then_some(MASKED_ALPHA));
+        let cutoff = cutoff.copied().or(alpha_mask);
         [
             u32::from(id),
             u32::from(slot),

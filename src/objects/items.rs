@@ -254,6 +254,10 @@ impl IdItems<'_> {
         }
     }
 
+    pub fn is_backdrop(&self, mesh: MainEntity) -> bool {
+        self.backdrops.contains(mesh.id())
+    }
+
     /// The bin of an object, and where the engine has uploaded it.
     pub fn bin(
         &mut self,
@@ -262,7 +266,7 @@ impl IdItems<'_> {
         what: Drawn,
     ) -> Result<(Bin, u32), Missing> {
         let drawn = self.drawn.get(entity)?;
-        if !in_prepass(drawn.properties) || self.backdrops.contains(entity.id()) {
+        if !in_prepass(drawn.properties) || self.is_backdrop(entity) {
             return Err(Missing::NotDrawn);
         }
         let moves = drawn.properties.get_shader(MaterialVertexShader).is_some();

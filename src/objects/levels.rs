@@ -8,13 +8,13 @@ use std::ops::Range;
 
 use bevy::{
     app::{App, PostUpdate},
-    camera::{primitives::Aabb, visibility::VisibilityRange},
+    camera::visibility::{ViewVisibility, VisibilityRange},
     ecs::{
         component::Component,
         entity::{Entity, EntityHashMap},
         hierarchy::ChildOf,
         lifecycle::RemovedComponents,
-        query::{Changed, Or, With},
+        query::{Added, Changed, Or, With},
         resource::Resource,
         system::{Query, ResMut},
     },
@@ -32,7 +32,6 @@ use super::{changes::Follow, shared::Shared, table::ObjectStyles};
 struct Margins {
     start: [f32; 2],
     end: [f32; 2],
-    use_aabb: bool,
 }
 
 impl Margins {
@@ -42,7 +41,6 @@ impl Margins {
         (!range.is_abrupt()).then(|| Self {
             start: margin(&range.start_margin),
             end: margin(&range.end_margin),
-            use_aabb: range.use_aabb,
         })
     }
 
@@ -78,14 +76,11 @@ impl Levels {
     /// The meshes that fade, seen from a point.
     pub fn fading(&self, eye: Vec3, places: &LevelPlaces) -> MainEntityHashSet {
         let fades = |(mesh, margins): &(&Entity, &Margins)| {
-            let Ok((at, aabb)) = places.get(**mesh) else {
-                return false;
-            };
-            let place = match aabb.filter(|_| margins.use_aabb) {
-                Some(aabb) => at.transform_point(aabb.center.into()),
-                None => at.translation(),
-            };
-            margins.is_inside(place.distance(eye))
+            // As the engine's pattern, also with `VisibilityRange::use_aabb`.
+            let place = places.get(**mesh);
+            place.is_ok_and(|(at, visible)| {
+                visible.get() && margins.is_inside(at.translation().distance(eye))
+            })
         };
         let fading = self.margins.iter().filter(fades);
         fading.map(|(mesh, _)| (*mesh).into()).collect()
@@ -94,7 +89,7 @@ impl Levels {
 
 /// Where levels are.
 pub(crate) type LevelPlaces<'w, 's> =
-    Query<'w, 's, (&'static GlobalTransform, Option<&'static Aabb>), With<VisibilityRange>>;
+    Query<'w, 's, (&'static GlobalTransform, &'static ViewVisibility), With<VisibilityRange>>;
 
 /// On a view: the meshes that fade in this frame.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -107,7 +102,12 @@ struct LevelsByPlace {
     levels: HashMap<Place, Vec<Entity>>,
 }
 
-type Changes = Or<(Changed<VisibilityRange>, Changed<ChildOf>)>;
+type Changes = Or<(
+    Changed<VisibilityRange>,
+    Changed<ChildOf>,
+    Changed<Transform>,
+    Added<Mesh3d>,
+)>;
 
 fn find_levels(
     changed: Query<

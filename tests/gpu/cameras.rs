@@ -245,6 +245,33 @@ fn colour_effects_change_what_is_seen_of_a_surface() {
     }
 }
 
+/// Light that is added has no opacity; effects leave it as it is where nothing else is.
+#[test]
+fn added_light_stays() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.clear();
+    small.insert(overlay_camera(0));
+    let light = StandardMaterial {
+        alpha_mode: AlphaMode::Add,
+        ..unlit(Color::linear_rgb(0.3, 0.2, 0.05))
+    };
+    let sheet = Plane3d::default().mesh().size(40.0, 40.0);
+    small.put(sheet, light, Transform::IDENTITY);
+    for style in [
+        ComicStyle::new().with(ToneBands::default()),
+        ComicStyle::new().with(ToneRamp::default()),
+        ComicStyle::new().with(Colorization::SEPIA),
+    ] {
+        small.style(&style);
+        small.settle();
+        let (before, after) = small.pass();
+        let middle = before.pixels.len() / 2 + 48;
+        let light = |picture: &FloatImage| picture.pixels[middle][..3].iter().sum::<f32>();
+        assert!(light(&before) > 0.4, "{}", light(&before));
+        assert!(light(&after) > 0.3, "{style:?}: {}", light(&after));
+    }
+}
+
 /// A material that is not in the prepass.
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
 struct Bare {}

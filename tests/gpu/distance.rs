@@ -1,7 +1,7 @@
 //! What counts as distance: skies that are meshes, the far plane, and the resolution.
 
 use bevy::camera::Projection;
-use bevy_comics::objects::Backdrop;
+use bevy_comics::{cameras::BeyondPrepass, objects::Backdrop};
 
 use crate::prelude::*;
 
@@ -51,15 +51,23 @@ fn a_sky_dome_is_sky() {
         small.settle();
         let (range, picture) = (small.range(), small.picture());
         let dome = dome(&mut small);
+        // Two of its parts have other ids.
+        let cloud = Transform::from_xyz(10.0, 30.0, -150.0).with_scale(Vec3::splat(20.0));
+        let blue = unlit(Color::srgb(0.3, 0.5, 0.8));
+        let cloud = small.put(Cuboid::default(), blue, cloud);
         small.settle();
         assert_ne!(small.range(), range, "the dome stretches the range");
         assert!(!are_equal(&small.picture(), &picture));
-        small.world().entity_mut(dome).insert(Backdrop::default());
+        for sky in [dome, cloud] {
+            small.world().entity_mut(sky).insert(Backdrop::default());
+        }
         small.settle();
         small.settle();
         assert_eq!(small.range(), range, "{msaa:?}");
         assert!(are_equal(&small.picture(), &picture), "{msaa:?}");
-        small.world().entity_mut(dome).remove::<Backdrop>();
+        for sky in [dome, cloud] {
+            small.world().entity_mut(sky).remove::<Backdrop>();
+        }
         small.settle();
         small.settle();
         assert_ne!(small.range(), range, "{msaa:?}");
@@ -73,6 +81,21 @@ fn a_sky_dome_is_sky() {
         assert!(are_equal(&small.picture(), &picture), "{msaa:?}");
         assert_eq!(small.errors(), 0);
     }
+}
+
+/// The dome is not in the prepass, but it is no foreign surface.
+#[test]
+fn a_backdrop_is_styled_as_the_sky() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
+    let dome = dome(&mut small);
+    small.world().entity_mut(dome).insert(Backdrop::default());
+    small.style(&style());
+    small.settle();
+    let styled = small.picture();
+    small.insert(BeyondPrepass::Plain);
+    small.settle();
+    assert!(small.picture() == styled);
+    assert_eq!(small.errors(), 0);
 }
 
 /// Ink of a white square before a black sky, seen in parallel at a fraction of the distance of the far plane.

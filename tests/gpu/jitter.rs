@@ -220,7 +220,10 @@ fn strokes_and_iso_lines_stand_still() {
             let more_than = |codes| changes.iter().filter(|change| **change > codes).count();
             // The strokes lie where the position says, to a hundredth of a pixel.
             let [some, many] = [2, 16].map(more_than);
-            assert!(some < changes.len() / 100 && many == 0, "{style:?}: {some}, {many}");
+            assert!(
+                some < changes.len() / 100 && many == 0,
+                "{style:?}: {some}, {many}"
+            );
         }
         assert_eq!(small.errors(), 0);
     }

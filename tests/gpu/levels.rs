@@ -2,7 +2,9 @@
 
 use bevy::camera::visibility::VisibilityRange;
 
-use crate::prelude::*;
+use bevy_comics::testing::ObjectWork;
+
+use crate::{prelude::*, small};
 
 /// Two spheres of other detail at one place, of which the near one fades into the far one between 8 and 12 units, and
 /// the camera at this distance.
@@ -86,4 +88,22 @@ fn there_are_no_holes_with_depth_alone() {
     let holes = (90..102).flat_map(|x| (58..70).map(move |y| (x, y)));
     assert_eq!(holes.filter(|(x, y)| blue(*x, *y)).count(), 0);
     assert!(blue(4, 4));
+}
+
+/// A mesh that fades is queued by itself.
+#[test]
+fn a_fade_queues_only_its_own_levels() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.style(&ComicStyle::new().with(Outlines::default()));
+    show(&mut small, 4.5);
+    small::spawn_objects(small.world());
+    small.settle();
+    let queued = |small: &Small| ObjectWork::of(small.render_world()).queued;
+    let before = queued(&small);
+    let away = |distance| Transform::from_xyz(0.0, 0.0, distance).looking_at(Vec3::ZERO, Vec3::Y);
+    small.insert(away(10.0)).settle();
+    let fading = queued(&small);
+    assert!((1..=4).contains(&(fading - before)), "{}", fading - before);
+    small.insert(away(4.5)).settle();
+    assert!(queued(&small) - fading <= 4);
 }

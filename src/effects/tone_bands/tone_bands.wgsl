@@ -78,7 +78,9 @@ fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32, splits: f32) -> ve
 
 fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
     var out = p;
-    out.color = banded_color(s, p.color / max(p.alpha, 1e-3), p.change, p.splits) * p.alpha;
+    let banded = banded_color(s, p.color / max(p.alpha, 1e-3), p.change, p.splits) * p.alpha;
+    // Light that is added to what is behind has no opacity, and stays as it is.
+    out.color = mix(p.color, banded, min(1e3 * p.alpha, 1.0));
     return out;
 }
 

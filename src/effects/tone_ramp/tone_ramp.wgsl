@@ -69,6 +69,7 @@ fn tone_ramp(s: ToneRamp, p: Pixel) -> Pixel {
     var out = p;
     let opacity = max(p.alpha, 1e-3);
     let tones = toned(s, max(p.color / opacity, vec3(0.0)), p.change, tone_detail(s, p.depth));
-    out.color = tones * p.alpha;
+    // Light that is added to what is behind has no opacity, and stays as it is.
+    out.color = mix(p.color, tones * p.alpha, min(1e3 * p.alpha, 1.0));
     return out;
 }

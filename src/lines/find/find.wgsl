@@ -2,7 +2,7 @@
 // cells.wgsl finds. A fragment stores the cracks to the east (x) and south (y) of its
 // pixel.
 
-#import bevy_comics::depth::view::{set_view, texel_depth}
+#import bevy_comics::depth::view::{is_drawn_sky, set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
 #import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #import bevy_comics::lines::pass::line_pass
@@ -20,12 +20,28 @@ fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
     return texel_depth(origin + vec2(x, y), 0);
 }
 
+#ifdef NORMALS
+fn normal_at(at: vec2<i32>) -> vec4<f32> {
+#ifdef SKY_BEYOND
+    if is_drawn_sky(at) {
+        return vec4(0.0);
+    }
+#endif
+    return texel_normal(at, 0);
+}
+#endif
+
 #ifdef OBJECT_IDS
 // The object at a pixel and its marks.
 fn object_at(at: vec2<i32>) -> vec2<u32> {
 #ifdef MARKS
     return marked_object(at, texel_depth(at, 0));
 #else
+#ifdef SKY_BEYOND
+    if is_drawn_sky(at) {
+        return vec2(0u);
+    }
+#endif
     return texel_object(at, 0);
 #endif
 }
@@ -54,20 +70,20 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.excess = step_excess(before_2, before, at.here, at.there, beyond, beyond_2);
     at.outdone = is_outdone(before, at.here, at.there, beyond);
 #ifdef NORMALS
-    let n = texel_normal(origin + p, 0);
-    let e = texel_normal(origin + vec2(high.x, p.y), 0);
-    let s = texel_normal(origin + vec2(p.x, high.y), 0);
+    let n = normal_at(origin + p);
+    let e = normal_at(origin + vec2(high.x, p.y));
+    let s = normal_at(origin + vec2(p.x, high.y));
     at.folds = vec2(fold(n, e), fold(n, s)).xyxy;
 #ifdef HARD
     at.faces_more = facing(n) - vec2(facing(e), facing(s)).xyxy;
 #endif
     let folds_before = vec2(
-        fold(texel_normal(origin + vec2(low.x, p.y), 0), n),
-        fold(texel_normal(origin + vec2(p.x, low.y), 0), n),
+        fold(normal_at(origin + vec2(low.x, p.y)), n),
+        fold(normal_at(origin + vec2(p.x, low.y)), n),
     ).xyxy;
     let folds_beyond = vec2(
-        fold(e, texel_normal(origin + vec2(high_2.x, p.y), 0)),
-        fold(s, texel_normal(origin + vec2(p.x, high_2.y), 0)),
+        fold(e, normal_at(origin + vec2(high_2.x, p.y))),
+        fold(s, normal_at(origin + vec2(p.x, high_2.y))),
     ).xyxy;
     at.ridge = is_ridge(folds_before, at.folds, folds_beyond);
     at.rim = is_rim_ridge(folds_before, at.folds, folds_beyond);

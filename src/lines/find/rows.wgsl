@@ -4,7 +4,7 @@
 // On CPU adapters a texel costs far more to load than to compare. With depth, normals and
 // ids, a walk down 32 rows loads 6 texels a pixel, and one down 8 rows 8.5, instead of 21.
 
-#import bevy_comics::depth::view::texel_depth
+#import bevy_comics::depth::view::{is_drawn_sky, texel_depth}
 #import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -117,7 +117,13 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
 
 #ifdef NORMALS
 fn normal_at(c: Columns, x: i32, y: i32) -> vec4<f32> {
-    return texel_normal(c.origin + vec2(x, y), 0);
+    let at = c.origin + vec2(x, y);
+#ifdef SKY_BEYOND
+    if is_drawn_sky(at) {
+        return vec4(0.0);
+    }
+#endif
+    return texel_normal(at, 0);
 }
 
 // Reads the normals of a row.
@@ -166,6 +172,11 @@ fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
 #ifdef MARKS
     return marked_object(at, texel_depth(at, 0));
 #else
+#ifdef SKY_BEYOND
+    if is_drawn_sky(at) {
+        return vec2(0u);
+    }
+#endif
     return texel_object(at, 0);
 #endif
 }

@@ -120,6 +120,8 @@ bitflags! {
         const STREAKS = 1 << 58;
         /// Lines ink whole pixels.
         const HARD = 1 << 59;
+        /// What is drawn beyond a distance counts as sky.
+        const SKY_BEYOND = 1 << 60;
     }
 }
 
@@ -130,6 +132,7 @@ impl LineKey {
     /// What walking and finding read of a view and its lines.
     const FOUND: Self = Self::SAME_SIZE
         .union(Self::OBLIQUE)
+        .union(Self::SKY_BEYOND)
         .union(Self::SILHOUETTES)
         .union(Self::CREASES)
         .union(Self::OBJECT_EDGES)
@@ -190,6 +193,7 @@ impl LineKey {
         let flags = [
             (request.view.depth_scale == Vec2::ONE, Self::SAME_SIZE),
             (request.oblique, Self::OBLIQUE),
+            (request.view.raw.sky > 0.0, Self::SKY_BEYOND),
             (request.ids, Self::OBJECT_IDS),
             (request.object_styles, Self::OBJECT_STYLES),
             (request.visible_range, Self::VISIBLE_RANGE),

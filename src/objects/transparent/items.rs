@@ -157,6 +157,14 @@ impl TransparentItems<'_> {
         self.bin_of(entity, view_key, targets, cutoff)
     }
 
+    /// The alpha below which the material of a mesh leaves pixels out.
+    pub fn alpha_mask(&self, entity: MainEntity) -> Option<f32> {
+        match self.drawn.get(entity).ok()?.properties.alpha_mode {
+            AlphaMode::Mask(threshold) => Some(threshold),
+            _ => None,
+        }
+    }
+
     fn bin_of(
         &mut self,
         entity: MainEntity,

@@ -78,11 +78,12 @@ fn colored(
     if let Some(s) = style.get::<ToneRamp>() {
         let seen = linear.map(|c| (c / opacity).max(0.0) * (1.0 + nudge));
         let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
-        linear = tones.map(|c| c * alpha);
+        linear = std::array::from_fn(|i| mix(linear[i], tones[i] * alpha, (1e3 * alpha).min(1.0)));
     }
     if let Some(s) = style.get::<ToneBands>() {
         let seen = linear.map(|c| c / opacity * (1.0 + nudge));
-        linear = tone_bands::banded_color(s, seen, change, 1.0).map(|c| c * alpha);
+        let banded = tone_bands::banded_color(s, seen, change, 1.0);
+        linear = std::array::from_fn(|i| mix(linear[i], banded[i] * alpha, (1e3 * alpha).min(1.0)));
     }
     let mut saturation = 1.0;
     if let Some(s) = style.get::<Desaturation>() {
