@@ -252,7 +252,7 @@ impl Inputs<'_> {
                 let lists = &self.tiles()?.lists;
                 entries.extend(lists.cell_entries());
                 entries.extend(buffers.cell_entries());
-                Ok(ReadyFind::Cells(ReadyCells {
+                Ok(ReadyFind::Cells(Box::new(ReadyCells {
                     lists,
                     buffers,
                     find: self.compute(passes.find, &key.cells_layout(), &entries)?,
@@ -263,7 +263,7 @@ impl Inputs<'_> {
                     measure: self.measure_passes(&passes, cracks, buffers)?,
                     settle: self.settle_pass(&passes, cracks, buffers)?,
                     ends: self.ends_pass(&passes, cracks)?,
-                }))
+                })))
             }
             _ => Err(NOT_READY),
         }

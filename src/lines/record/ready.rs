@@ -91,7 +91,7 @@ impl ReadyCells<'_> {
 
 /// The passes that find cracks, ready to be recorded.
 pub(super) enum ReadyFind<'a> {
-    Cells(ReadyCells<'a>),
+    Cells(Box<ReadyCells<'a>>),
     /// Draws them into a texture.
     Pixels(Ready<'a, RenderPipeline>, &'a CachedTexture),
 }
