@@ -217,13 +217,9 @@ fn strokes_and_iso_lines_stand_still() {
                 (0..3).map(|c| a.0[c].abs_diff(b.0[c])).max()
             };
             let changes: Vec<_> = pixels.filter_map(change).collect();
-            let more_than = |codes| changes.iter().filter(|change| **change > codes).count();
-            // The strokes lie where the position says, to a hundredth of a pixel.
-            let [some, many] = [2, 16].map(more_than);
-            assert!(
-                some < changes.len() / 100 && many == 0,
-                "{style:?}: {some}, {many}"
-            );
+            // The border of a stroke is a pixel wide: it moves by less than a sixteenth of a pixel.
+            let most = changes.iter().max();
+            assert!(most < Some(&16), "{style:?}: {most:?}");
         }
         assert_eq!(small.errors(), 0);
     }
