@@ -162,7 +162,12 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
     let silhouettes = (s.silhouettes).filter(|k| k.equations == Equations::Corrected);
     let creases = s.creases.filter(|k| k.equations == Equations::Corrected);
     if let Some(k) = silhouettes {
-        let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
+        // Where a surface ends in front of the sky, there is a step, however small.
+        let p = if here.min(there) <= 0.0 && near > 0.0 {
+            1.0
+        } else {
+            step_response(excess, 0.5 * f64::from(k.threshold) * reference)
+        };
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         if near > 0.0 && is_stored(amount) && !is_outdone(depths) {
             crack.kinds[0] = true;
