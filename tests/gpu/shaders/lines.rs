@@ -24,6 +24,7 @@ fn finding() -> Vec<Variant> {
     const LISTS: &[&str] = &[
         KINDS,
         "| OBLIQUE",
+        "| SKY_BEYOND",
         "| SAME_SIZE",
         "| FADING",
         "| VISIBLE_RANGE",
@@ -88,6 +89,7 @@ fn walking() -> Vec<Variant> {
     const LISTS: &[&str] = &[
         KINDS,
         "| OBLIQUE",
+        "| SKY_BEYOND",
         "| SAME_SIZE",
         "| BRIDGED",
         "| JUMPS MAP_FLAGS=0 | JUMPS MAP_FLAGS=1 | JUMPS MAP_FLAGS=2 | JUMPS MAP_FLAGS=3",

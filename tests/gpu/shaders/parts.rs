@@ -11,7 +11,7 @@ use super::{
 use crate::prelude::*;
 
 pub fn variants() -> Vec<Definitions> {
-    [divided(), overlays(), bases()].concat()
+    [divided(), overlays(), bases(), masked()].concat()
 }
 
 /// The passes of a plan whose effects read the picture at other places: those of each effect, those
@@ -122,6 +122,33 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
         names.extend(["UNSTYLED", "UNSTYLED_COLORS"]);
     }
     names
+}
+
+/// Passes that change only a part of each pixel, with all effects but a sketch, which replaces outlines.
+fn masked() -> Vec<Definitions> {
+    const FORMS: &[&str] = &[
+        "| MASKED_BY_DEPTH DEPTH | MASKED_BY_IDS OBJECT_IDS MASK_REACH=3",
+        "| BEYOND_PREPASS DEPTH | BEYOND_PREPASS BEYOND_PLAIN DEPTH",
+        "| MULTISAMPLED",
+        "| MASKED_COLORS MASKED_PRINT",
+    ];
+    let drawn = || effects::all().iter().filter(|m| m.effect.name != "sketch");
+    let later = drawn().filter(|modes| modes.effect.stage > EffectStage::Print);
+    let masks = later.enumerate().map(|(i, modes)| {
+        let (name, _) = flag(format!(
+            "MASKED_EFFECT_{}",
+            modes.effect.name.to_uppercase()
+        ));
+        (name, Some(i as u32 % 2))
+    });
+    let masks: Definitions = masks.chain([("MASK", None)]).collect();
+    let modes: Definitions = drawn().flat_map(|drawn| drawn.modes[0].clone()).collect();
+    let forms = rows(FORMS, |names| names);
+    let of_form = |form: &Definitions| of_pass(&[form, &masks, &modes]);
+    let sketches = effects::all().iter().filter(|m| m.effect.name == "sketch");
+    let mask = [("MASK", None), ("MASKED_EFFECT_SKETCH", Some(0))];
+    let sketches = sketches.map(|sketch| of_pass(&[&mask, &sketch.modes[0]]));
+    forms.iter().map(of_form).chain(sketches).collect()
 }
 
 /// All pixels, before tiles with all effects: without those effects that change only tiles.

@@ -36,19 +36,24 @@ impl Densities {
             let [column, row] = [i as i64 % across, i as i64 / across];
             sum / (inside(column, size[0]) * inside(row, size[1]))
         });
-        let mut levels = vec![first.collect()];
-        for pair in SQUARES.windows(2) {
-            let [small, large] = [pair[0], pair[1]].map(|side| Self::squares(size, side));
-            let before: &Vec<f64> = &levels[levels.len() - 1];
+        let mut levels: Vec<Vec<f64>> = vec![first.collect()];
+        for level in 1..SQUARES.len() {
+            // One pass begins with the smallest squares, another one with those of level 3. Beyond
+            // the grid, the last ones of these count.
+            let from = if level <= 3 { 0 } else { 3 };
+            let [small, large] = [from, level].map(|at| Self::squares(size, SQUARES[at]));
+            let steps = 1 << (level - from);
             let at = |x: i64, y: i64| {
-                before[(y.min(small[1] - 1) * small[0] + x.min(small[0] - 1)) as usize]
+                levels[from][(y.min(small[1] - 1) * small[0] + x.min(small[0] - 1)) as usize]
             };
-            let mean = |x: i64, y: i64| {
-                let [x, y] = [2 * x, 2 * y];
-                0.25 * (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1))
+            let inside = |x: i64, y: i64| {
+                let places = (0..steps).flat_map(|i| (0..steps).map(move |j| (i, j)));
+                let sum: f64 = places.map(|(i, j)| at(steps * x + i, steps * y + j)).sum();
+                sum / (steps * steps) as f64
             };
             let places = (0..large[1]).flat_map(|y| (0..large[0]).map(move |x| (x, y)));
-            levels.push(places.map(|(x, y)| mean(x, y)).collect());
+            let means = places.map(|(x, y)| inside(x, y)).collect();
+            levels.push(means);
         }
         Self { size, levels }
     }
