@@ -44,12 +44,23 @@ impl Input<'_> {
     }
 
     /// Change of the lightness over a pixel: the sum of the differences to its two
-    /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`.
-    fn change(&self, x: u32, y: u32) -> f64 {
+    /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`. Outside of the viewport, its
+    /// border counts.
+    fn change(&self, viewport: [u32; 4], x: u32, y: u32) -> f64 {
         let at = |x, y| color::lightness(self.light(x, y));
-        let beside = |v: u32, first: u32| (v.wrapping_sub(first) ^ 1).wrapping_add(first);
-        let [left, top] = self.quads;
-        (at(x, y) - at(beside(x, left), y)).abs() + (at(x, y) - at(x, beside(y, top))).abs()
+        let [left, top, width, height] = viewport;
+        let beside = |v: u32, quads: u32, first: u32, size: u32| {
+            let other = (v.wrapping_sub(quads) ^ 1).wrapping_add(quads);
+            // Before the first pixel of a target, the number has wrapped.
+            if other < first || other > v + 1 {
+                first
+            } else {
+                other.min(first + size - 1)
+            }
+        };
+        let across = beside(x, self.quads[0], left, width);
+        let down = beside(y, self.quads[1], top, height);
+        (at(x, y) - at(across, y)).abs() + (at(x, y) - at(x, down)).abs()
     }
 }
 
@@ -74,7 +85,7 @@ fn colored(
     }
     let [d, l] = depth;
     let opacity = alpha.max(1e-3);
-    let change = (input.change(x, y) + nudge).max(0.0);
+    let change = (input.change(view.viewport, x, y) + nudge).max(0.0);
     if let Some(s) = style.get::<ToneRamp>() {
         let seen = linear.map(|c| (c / opacity).max(0.0) * (1.0 + nudge));
         let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
