@@ -141,10 +141,8 @@ fn update_overlays(
             continue;
         };
         let (own, own_projection, own_target, own_msaa, own_hdr, (tonemapping, dither)) = copied;
-        let order = own.order.saturating_add(1);
-        if (camera.order, camera.is_active) != (order, own.is_active) {
-            (camera.order, camera.is_active) = (order, own.is_active);
-        }
+        camera.order = own.order.saturating_add(1);
+        camera.is_active = own.is_active;
         camera.viewport.clone_from(&own.viewport);
         camera.sub_camera_view.clone_from(&own.sub_camera_view);
         camera.invert_culling = own.invert_culling;

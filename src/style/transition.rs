@@ -124,8 +124,8 @@ impl StyleTransition {
         Self { easing, ..self }
     }
 
-    /// The same transition in real time: it goes on while the game is paused or in slow motion, as for
-    /// the look of a pause menu.
+    /// The same transition, on [`Time<Real>`](bevy::time::Real): it continues while the game is paused, or in slow
+    /// motion. For pause menus, for example.
     #[must_use]
     pub fn in_real_time(self) -> Self {
         Self {

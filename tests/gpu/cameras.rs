@@ -375,6 +375,41 @@ fn an_overlay_is_drawn_over_the_comic() {
     assert_eq!(small.errors(), 0);
 }
 
+/// The columns of a viewport that begins at this one, in display codes.
+fn columns_of_viewport(small: &mut Small, left: u32) -> Vec<[u8; 4]> {
+    let size = UVec2::new(50, 64);
+    let at = Viewport {
+        physical_position: UVec2::new(left, 0),
+        physical_size: size,
+        ..default()
+    };
+    small
+        .camera_mut()
+        .get_mut::<Camera>()
+        .expect("a camera")
+        .viewport = Some(at);
+    small.settle();
+    let picture = small.picture();
+    let rows = 0..size.y;
+    let pixels = rows.flat_map(|y| (left..left + size.x).map(move |x| (x, y)));
+    pixels.map(|(x, y)| picture.get_pixel(x, y).0).collect()
+}
+
+/// The pixels of a quad may belong to two viewports; a view is the same wherever it begins.
+#[test]
+fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbour() {
+    let mut small = Small::new(size(), Msaa::Off);
+    // Its bands read how lightness changes over a pixel.
+    let bands = ToneBands {
+        softness: 8.0,
+        ..default()
+    };
+    small.style(&ComicStyle::new().with(bands));
+    let even = columns_of_viewport(&mut small, 40);
+    assert!(columns_of_viewport(&mut small, 41) == even);
+    assert_eq!(small.errors(), 0);
+}
+
 /// A mirrored view is the picture of the view that it mirrors.
 #[test]
 fn a_mirrored_view_is_the_mirrored_picture() {
