@@ -21,21 +21,25 @@ use super::groups::DEEPEST;
 
 /// The entity got another parent or none, or lost a component that others inherit.
 #[derive(Message)]
-pub(super) struct Moved(Entity);
+pub(super) enum Moved {
+    Parent(Entity),
+    Component(Entity),
+}
 
 pub(super) fn build(app: &mut App) {
-    app.add_message::<Moved>().add_observer(
-        |on: On<Insert, ChildOf>, mut moved: MessageWriter<Moved>| {
-            moved.write(Moved(on.entity));
-        },
-    );
-    watch::<ChildOf>(app);
+    app.add_message::<Moved>()
+        .add_observer(|on: On<Insert, ChildOf>, mut moved: MessageWriter<Moved>| {
+            moved.write(Moved::Parent(on.entity));
+        })
+        .add_observer(|on: On<Remove, ChildOf>, mut moved: MessageWriter<Moved>| {
+            moved.write(Moved::Parent(on.entity));
+        });
 }
 
 /// Notes the entities that lose a component.
 pub(super) fn watch<C: Component>(app: &mut App) {
     app.add_observer(|on: On<Remove, C>, mut moved: MessageWriter<Moved>| {
-        moved.write(Moved(on.entity));
+        moved.write(Moved::Component(on.entity));
     });
 }
 
@@ -80,9 +84,17 @@ impl<H: Heritage> Inherited<'_, '_, H> {
     /// Looks for changes; returns the entities that may take something else now, or nothing. To be
     /// called once in every frame.
     pub fn update(&mut self) -> EntityHashSet {
-        let moved = self.moved.read().map(|moved| moved.0);
-        let moved: Vec<Entity> = moved.collect();
-        let changed: EntityHashSet = self.changed.iter().collect();
+        let mut changed: EntityHashSet = self.changed.iter().collect();
+        let mut moved = Vec::new();
+        for event in self.moved.read() {
+            match event {
+                // It may have another one of several that go together.
+                Moved::Component(entity) if self.own.contains(*entity) => {
+                    changed.insert(*entity);
+                }
+                Moved::Component(entity) | Moved::Parent(entity) => moved.push(*entity),
+            }
+        }
         let mut affected = EntityHashSet::default();
         if self.sources.is_empty() && changed.is_empty() {
             return affected;
