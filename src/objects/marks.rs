@@ -21,7 +21,7 @@ use super::{
     changes::Follow,
     inherit::{Heritage, Inherited, watch},
     shared::Shared,
-    table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
+    table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles, VISIBLE_ONLY},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
 
@@ -29,8 +29,8 @@ use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
 const SILHOUETTES: u32 = 1;
 const OBJECT_EDGES: u32 = 4;
 
-/// Outlines this object in the picture, also where others hide it: for what the player has
-/// selected or points at.
+/// Outlines this object in the picture, also where others hide it unless
+/// [`occluded`](Self::occluded) is false: for what the player has selected or points at.
 ///
 /// Nothing else is needed: every `Camera3d` that sees the object draws the outline, over its
 /// other effects. All meshes of the object together have one outline, along the border of
@@ -50,6 +50,8 @@ pub struct SelectionOutline {
     /// Opacity of the line. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
+    /// Also where other objects are in front. Default: `true`.
+    pub occluded: bool,
     /// Applies to all descendants as well, except for those with a `SelectionOutline` or
     /// [`XRayOutline`] of their own. Default: `true`.
     pub inherit: bool,
@@ -61,6 +63,7 @@ impl Default for SelectionOutline {
             color: Color::Srgba(Srgba::new(1.0, 0.55, 0.05, 1.0)),
             width: 3.0,
             opacity: 1.0,
+            occluded: true,
             inherit: true,
         }
     }
@@ -142,7 +145,8 @@ impl SelectionOutline {
 
     /// Only the border against other objects.
     fn uniform(self) -> ObjectStyleUniform {
-        line_style(self.sanitized().line(), OBJECT_EDGES)
+        let visible = if self.occluded { 0 } else { VISIBLE_ONLY };
+        line_style(self.sanitized().line(), OBJECT_EDGES | visible)
     }
 }
 

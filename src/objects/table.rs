@@ -77,6 +77,10 @@ pub(crate) struct ObjectStyles {
 #[cfg(feature = "objects")]
 pub(crate) const HIDDEN_ONLY: u32 = 16;
 
+/// The bit of `ObjectStyleUniform::kinds` of objects of which only visible parts have lines.
+#[cfg(feature = "objects")]
+pub(crate) const VISIBLE_ONLY: u32 = 32;
+
 /// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
 #[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;

@@ -89,7 +89,7 @@ fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
 }
 
 #[test]
-fn only_the_hidden_part_of_an_object_has_x_ray_lines() {
+fn only_the_hidden_or_the_visible_part_of_an_object_has_lines() {
     let (mut small, ..) = scene();
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let (square, wall) = spawn(&mut small, msaa);
@@ -102,6 +102,15 @@ fn only_the_hidden_part_of_an_object_has_x_ray_lines() {
         let picture = small.picture();
         let above: f64 = (30..66).map(|x| 1.0 - linear(&picture, x, 28)[1]).sum();
         assert!((above - 18.0).abs() < 2.5, "{msaa:?}: {above}");
+        small.on(square).insert(SelectionOutline {
+            occluded: false,
+            ..green(1.0)
+        });
+        let found = sides(&mut small);
+        for (color, want) in found.into_iter().zip([WHITE, GREEN, WHITE, GREEN, WHITE]) {
+            assert!(alike(color, want), "{msaa:?}: {found:?}");
+        }
+        small.on(square).remove::<SelectionOutline>();
         // Nothing hides it any more.
         small.world().despawn(wall);
         assert_eq!(sides(&mut small), [WHITE; 5]);

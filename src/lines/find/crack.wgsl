@@ -29,8 +29,9 @@ const SLOT: u32 = 255u;
 const ABOVE_SLOT: u32 = 8u;
 
 #ifdef MARKS
-// The bit of ObjectStyle::kinds of objects of which only hidden parts have lines.
+// Bits of ObjectStyle::kinds of objects of which only hidden parts have lines, or only visible ones.
 const HIDDEN_ONLY: u32 = 16u;
+const VISIBLE_ONLY: u32 = 32u;
 #endif
 
 // The kinds of line that four objects draw, by their marks.
@@ -39,7 +40,8 @@ fn kinds_of_four(marks: vec4<u32>) -> vec4<u32> {
     let slots = marks & vec4(SLOT);
     let kinds = vec4(kinds_of(slots.x), kinds_of(slots.y), kinds_of(slots.z), kinds_of(slots.w));
 #ifdef MARKS
-    return select(kinds, vec4(0u), has(kinds, HIDDEN_ONLY) & !has(marks, HIDDEN));
+    let hidden = has(marks, HIDDEN);
+    return select(kinds, vec4(0u), (has(kinds, HIDDEN_ONLY) & !hidden) | (has(kinds, VISIBLE_ONLY) & hidden));
 #else
     return kinds;
 #endif
