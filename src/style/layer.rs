@@ -14,7 +14,7 @@ use crate::{
 
 /// On a camera that a style was applied to: what it looks like without.
 #[derive(Component, Clone, Debug)]
-struct StyleLayer {
+pub(super) struct StyleLayer {
     /// The camera's own style.
     own: ComicStyle,
     /// The style that lies over it.
@@ -102,12 +102,14 @@ impl ComicStyle {
     /// Takes the applied style off a camera, which then has its own style again.
     /// A camera without a style does not change.
     pub fn remove_from(camera: &mut EntityCommands) {
-        camera.queue(|mut camera: EntityWorldMut| {
-            let own = own_look(&camera);
-            if camera.take::<StyleLayer>().is_some() {
-                own.write(&mut camera);
-            }
-        });
+        camera.queue(|mut camera: EntityWorldMut| Self::take_off(&mut camera));
+    }
+
+    pub(super) fn take_off(camera: &mut EntityWorldMut) {
+        let own = own_look(camera);
+        if camera.take::<StyleLayer>().is_some() {
+            own.write(camera);
+        }
     }
 
     /// Makes this style the camera's own, as a complete one, with no style over it.
@@ -139,7 +141,7 @@ impl ComicStyle {
         });
     }
 
-    fn lay_over(self, camera: &mut EntityWorldMut) {
+    pub(super) fn lay_over(self, camera: &mut EntityWorldMut) {
         let own = own_look(camera);
         let written = self.over(&own);
         written.write(camera);
@@ -185,4 +187,17 @@ fn known_types(camera: &EntityWorldMut) -> Vec<&'static EffectType> {
         .get_resource::<EffectRegistry>()
         .map(EffectRegistry::types)
         .unwrap_or_default()
+}
+
+/// The style that was applied to the camera, with what the game has edited since.
+pub(super) fn applied_style(camera: &EntityWorldMut) -> Option<ComicStyle> {
+    let layer = camera.get::<StyleLayer>()?;
+    let registry = camera.world().get_resource::<EffectRegistry>()?;
+    let current = ComicStyle::of(EntityRef::from(camera), registry);
+    let is_edited = current.effects != layer.written.effects;
+    Some(if is_edited {
+        current
+    } else {
+        layer.style.clone()
+    })
 }

@@ -10,20 +10,24 @@ pub(crate) mod rust_code;
 #[cfg(test)]
 mod tests;
 mod transition;
+mod volume;
 
 use std::collections::BTreeSet;
 
 use bevy::{
-    app::{App, Plugin, Update},
+    app::{App, Plugin, PostUpdate, Update},
     asset::{Asset, AssetApp},
+    camera::visibility::VisibilitySystems,
     ecs::schedule::IntoScheduleConfigs,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    transform::TransformSystems,
 };
 
 pub use apply::{Comic, ComicTemplate};
 pub use format::{ComicStyleError, ReadStyle};
 pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
+pub use volume::{InStyleVolumes, StyleVolume};
 
 use crate::{
     depth::DepthMap,
@@ -200,7 +204,9 @@ pub(crate) struct StylePlugin;
 impl Plugin for StylePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleTransition>()
-            .register_type::<Comic>();
+            .register_type::<Comic>()
+            .register_type::<StyleVolume>()
+            .register_type::<InStyleVolumes>();
     }
 }
 
@@ -214,6 +220,12 @@ impl StylePlugin {
             .add_systems(
                 Update,
                 (apply::apply_styles, transition::run_transitions).chain(),
+            )
+            .add_systems(
+                PostUpdate,
+                volume::style_by_place
+                    .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate),
             );
     }
 }

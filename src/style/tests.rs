@@ -4,19 +4,24 @@ use std::any::TypeId;
 
 use bevy::{
     app::App,
-    asset::AssetPlugin,
-    camera::Camera3d,
+    asset::{AssetPlugin, Assets},
+    camera::{
+        Camera3d,
+        visibility::{InheritedVisibility, RenderLayers},
+    },
     ecs::{entity::Entity, template::FromTemplate},
+    math::Vec3,
     prelude::{AppTypeRegistry, TaskPoolPlugin},
     reflect::{
         TypeRegistry,
         serde::{ReflectDeserializer, ReflectSerializer},
     },
     tasks::tick_global_task_pools_on_main_thread,
+    transform::components::GlobalTransform,
 };
 use serde::de::DeserializeSeed;
 
-use super::{Comic, ComicStyle, StyleTransition, presets};
+use super::{Comic, ComicStyle, InStyleVolumes, StyleTransition, StyleVolume, presets};
 use crate::{
     ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation, Outlines, Vignette,
     effect::EffectRegistry,
@@ -225,6 +230,118 @@ fn a_transition_to_a_partial_style_keeps_the_cameras_own() {
     assert_eq!(end.depth_map, Some(fixed()));
 }
 
+/// The style of a camera in an app with volumes, after it was moved to a place on the x axis.
+fn look_at(app: &mut App, camera: Entity, x: f32) -> ComicStyle {
+    let place = GlobalTransform::from_xyz(x, 0.0, 0.0);
+    app.world_mut().entity_mut(camera).insert(place);
+    app.update();
+    look(app, camera)
+}
+
+#[test]
+fn cameras_have_the_styles_of_the_volumes_that_they_are_in() {
+    let (mut app, camera) = app();
+    let place = GlobalTransform::from_scale(Vec3::splat(2.0));
+    let mut volume = |style: ComicStyle, margin, priority| {
+        let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+        let style = styles.add(style);
+        let volume = StyleVolume {
+            style,
+            margin,
+            priority,
+        };
+        let shown = InheritedVisibility::VISIBLE;
+        app.world_mut().spawn((volume, place, shown)).id()
+    };
+    let wide = ComicStyle::new().with(outlines(3.0));
+    let dark = ComicStyle::new().with(Vignette::default()).partial();
+    let dark_volume = volume(dark.clone(), 1.0, 1);
+    let wide_volume = volume(wide.clone(), 2.0, 0);
+    let own = look_at(&mut app, camera, 0.5);
+    assert_eq!(own.get(), Some(&outlines(1.0)), "not in volumes");
+    app.world_mut().entity_mut(camera).insert(InStyleVolumes);
+
+    // The one of the higher priority lies over the other; the depth map is the camera's own.
+    let inside = look_at(&mut app, camera, 0.5);
+    assert_eq!(inside.get(), Some(&outlines(3.0)));
+    assert_eq!(inside.get(), Some(&Vignette::default()));
+    assert_eq!(inside.depth_map, own.depth_map);
+    let below = own.blend(&wide.over(&own), 0.75);
+    let want = below.blend(&dark.over(&below), 0.5);
+    assert_eq!(look_at(&mut app, camera, 1.5).effects, want.effects);
+    assert_eq!(look_at(&mut app, camera, 9.0), own);
+    look_at(&mut app, camera, 1.5);
+
+    // Hidden, on another layer, and gone.
+    *app.world_mut().get_mut(dark_volume).expect("a volume") = InheritedVisibility::HIDDEN;
+    assert_eq!(look_at(&mut app, camera, 1.5).effects, below.effects);
+    let layer = RenderLayers::layer(3);
+    app.world_mut()
+        .entity_mut(wide_volume)
+        .insert(layer.clone());
+    assert_eq!(look_at(&mut app, camera, 1.5), own);
+    app.world_mut().entity_mut(camera).insert(layer);
+    assert_eq!(look_at(&mut app, camera, 0.0).get(), Some(&outlines(3.0)));
+    app.world_mut()
+        .entity_mut(camera)
+        .remove::<InStyleVolumes>();
+    assert_eq!(look_at(&mut app, camera, 0.0), own);
+}
+
+#[test]
+fn volumes_lie_over_the_style_that_was_applied_last() {
+    let (mut app, camera) = app();
+    let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+    let [first, second] = [5.0, 7.0].map(|width| ComicStyle::new().with(outlines(width)));
+    let handle = styles.add(first.clone());
+    let dark = ComicStyle::new().with(Vignette::default()).partial();
+    let volume = StyleVolume {
+        style: styles.add(dark),
+        ..StyleVolume::default()
+    };
+    let shown = InheritedVisibility::VISIBLE;
+    app.world_mut()
+        .spawn((volume, GlobalTransform::IDENTITY, shown));
+    let parts = (InStyleVolumes, Comic(handle.clone()));
+    app.world_mut().entity_mut(camera).insert(parts);
+    let width = |look: &ComicStyle| look.get::<Outlines>().map(|lines| lines.width);
+    let inside = look_at(&mut app, camera, 0.0);
+    assert_eq!(
+        (width(&inside), inside.effects.iter().count()),
+        (Some(5.0), 2)
+    );
+
+    // Its file changes.
+    let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+    *styles.get_mut(&handle).expect("a style") = second.clone();
+    for _ in 0..2 {
+        app.update();
+    }
+    let inside = look_at(&mut app, camera, 0.0);
+    assert_eq!(
+        (width(&inside), inside.effects.iter().count()),
+        (Some(7.0), 2)
+    );
+    assert_eq!(look_at(&mut app, camera, 9.0).effects, second.effects);
+
+    // A transition within the volume arrives, and the volume lies over it again.
+    look_at(&mut app, camera, 0.0);
+    app.world_mut()
+        .entity_mut(camera)
+        .insert(StyleTransition::to(first.clone(), 0.0));
+    for _ in 0..3 {
+        app.update();
+    }
+    let inside = look_at(&mut app, camera, 0.0);
+    assert_eq!(
+        (width(&inside), inside.effects.iter().count()),
+        (Some(5.0), 2)
+    );
+    assert_eq!(look_at(&mut app, camera, 9.0).effects, first.effects);
+    app.world_mut().entity_mut(camera).remove::<Comic>();
+    assert_eq!(width(&look_at(&mut app, camera, 9.0)), Some(1.0));
+}
+
 #[test]
 fn partial_styles_are_files_too() {
     let text = "(version: 3, partial: true, contours: None, outlines: (width: 3.0))";
@@ -255,7 +372,7 @@ fn load(app: &mut App, handle: &bevy::asset::Handle<ComicStyle>) -> ComicStyle {
     for _ in 0..1000 {
         app.update();
         tick_global_task_pools_on_main_thread();
-        let styles = app.world().resource::<bevy::asset::Assets<ComicStyle>>();
+        let styles = app.world().resource::<Assets<ComicStyle>>();
         if let Some(style) = styles.get(handle) {
             return style.clone();
         }
