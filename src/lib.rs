@@ -112,7 +112,7 @@ pub use toon::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
 
 /// Several cameras: pictures over pictures.
 pub mod cameras {
-    pub use crate::camera::{ComicOverlay, overlay_camera};
+    pub use crate::camera::{ComicOverlay, RangeOf, overlay_camera};
     pub use crate::composite::{BeyondPrepass, StyleMask};
 }
 

@@ -8,6 +8,7 @@ mod light;
 mod mirror;
 mod overlay;
 mod prepasses;
+mod range_of;
 mod shared;
 mod warnings;
 
@@ -19,7 +20,7 @@ use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
         component::Component,
-        entity::Entity,
+        entity::{Entity, EntityHashMap},
         query::With,
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res},
@@ -43,6 +44,7 @@ use crate::{
 pub use light::KeyLight;
 pub use overlay::{ComicOverlay, overlay_camera};
 use prepasses::{give_up_claims, read_drawn_depth, request_prepasses};
+pub use range_of::RangeOf;
 use shared::{Styled, own_pixels};
 use warnings::{warn_of_pairs, warn_unsupported};
 
@@ -61,6 +63,7 @@ impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         overlay::build(app);
         app.register_type::<KeyLight>()
+            .register_type::<RangeOf>()
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
@@ -118,6 +121,7 @@ fn plan_cameras(
         plan.and_then(|_| Styled::new(cameras.get(*camera).ok()?, primary_window))
     });
     let styled: Vec<_> = styled.collect();
+    let leaders = leaders(&planned, &cameras);
     for (camera, mut plan) in planned {
         let Ok(camera) = cameras.get(camera) else {
             continue;
@@ -126,6 +130,8 @@ fn plan_cameras(
         let mut entity = commands.entity(camera.id());
         if let Some(plan) = &mut plan {
             plan.materials = materials.0;
+            plan.range_of = leaders.get(&camera.id()).copied();
+            plan.lends = leaders.values().any(|leader| *leader == camera.id());
             plan.own_pixels = own_pixels(camera, plan, &styled);
         }
         match (plan, known) {
@@ -142,4 +148,22 @@ fn plan_cameras(
             (None, None) => {}
         }
     }
+}
+
+/// The cameras whose visible ranges others take.
+fn leaders(
+    planned: &[(Entity, Option<Plan>)],
+    cameras: &Query<EntityRef, With<Camera3d>>,
+) -> EntityHashMap<Entity> {
+    let has_plan = |camera| {
+        planned
+            .iter()
+            .any(|(known, plan)| *known == camera && plan.is_some())
+    };
+    let leader = |(camera, plan): &(Entity, Option<Plan>)| {
+        plan.as_ref().filter(|plan| plan.needs_range())?;
+        let leader = range_of::leader(cameras.get(*camera).ok()?, cameras, has_plan)?;
+        Some((*camera, leader))
+    };
+    planned.iter().filter_map(leader).collect()
 }

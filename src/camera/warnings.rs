@@ -74,7 +74,7 @@ pub(super) fn warn_of_pairs(
         let lines = plan.and_then(|plan| plan.plan.lines);
         if lines.is_some() && has(&LENS_DISTORTION) {
             warn_once!(
-                "`LensDistortion` on {id} bends the picture before lines are drawn: they lie beside their edges"
+                "`LensDistortion` on {id} bends the picture before lines are drawn: put it on an empty second camera"
             );
         }
         if is_overlay(camera) && OPAQUE.iter().any(has) {

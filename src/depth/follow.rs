@@ -19,7 +19,8 @@ use bevy::{
 };
 
 use super::{
-    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
+    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, prepare::RANGE_SIZE,
+    request::RangeRequest,
 };
 use crate::gpu::{buffer, compute_pass, entry};
 
@@ -128,7 +129,7 @@ impl ViewSmoothing {
             state: buffer("comics_range_state", STATE_SIZE, BufferUsages::COPY_SRC),
             drawn: buffer(
                 "comics_smoothed_range",
-                16,
+                RANGE_SIZE,
                 BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
             ),
             histogram: None,

@@ -146,6 +146,22 @@ impl DepthProjection {
         }
     }
 
+    /// Raw depth of another projection at the distance of a raw depth d of this one: factor * d + summand,
+    /// or with a pole, factor / (d + pole) + summand.
+    pub fn conversion(&self, to: &Self) -> (f64, f64, Option<f64>) {
+        let [(a, b), (c, e)] = [self, to].map(|p| match p.kind {
+            ProjectionKind::Oblique => (OBLIQUE_UNIT, 0.0),
+            _ => (p.shift, p.scale),
+        });
+        let [is_parallel, to_parallel] = [self, to].map(|p| p.kind == ProjectionKind::Orthographic);
+        match (is_parallel, to_parallel) {
+            (false, false) => (c / a, c / a * b - e, None),
+            (true, true) => (e / b, c - e / b * a, None),
+            (false, true) => (-e * a, c, Some(b)),
+            (true, false) => (-c * b, -e, Some(-a)),
+        }
+    }
+
     /// Two numbers that give the distance along the view's axis at a raw depth d: x / (d + y),
     /// under an orthographic projection x + y * d. See [`distance`](Self::distance).
     pub fn axis(&self) -> Vec2 {
@@ -355,6 +371,36 @@ mod tests {
             DepthProjection::new(&matrix, Some(&Projection::Perspective(projection)))
         };
         assert!(culled(10.0).same_raw_depth(&culled(20.0)));
+    }
+
+    #[test]
+    fn raw_depth_becomes_that_of_another_projection_at_the_same_distance() {
+        let orthographic = |far: f32| {
+            let matrix = Mat4::orthographic_rh(-1.0, 1.0, -1.0, 1.0, far, 0.0);
+            DepthProjection::new(&matrix, None)
+        };
+        let infinite = Mat4::perspective_infinite_reverse_rh(1.0, 1.5, 0.3);
+        let all = [
+            finite(0.1, 50.0),
+            DepthProjection::new(&infinite, None),
+            DepthProjection::new(&mirror(Vec4::new(0.1, 0.0, -1.0, -2.0)), None),
+            orthographic(40.0),
+            orthographic(90.0),
+        ];
+        for (i, from) in all.iter().enumerate() {
+            for (j, to) in all.iter().enumerate() {
+                let (factor, summand, pole) = from.conversion(to);
+                if i == j {
+                    assert_eq!((factor, summand, pole), (1.0, 0.0, None), "{i}");
+                }
+                for distance in [0.5, 3.0, 37.0] {
+                    let d = from.raw_depth(distance);
+                    let value = pole.map_or(d, |pole| 1.0 / (d + pole));
+                    let (got, want) = (factor * value + summand, to.raw_depth(distance));
+                    assert!((got - want).abs() < 1e-9, "{i} to {j}: {got}, {want}");
+                }
+            }
+        }
     }
 
     #[test]

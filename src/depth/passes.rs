@@ -18,21 +18,28 @@ use super::{
     ProjectionKind,
     borders::BorderPipeline,
     follow::SmoothingPipeline,
+    middle::MiddlePipeline,
     ping_pong::PingPongPipeline,
     range::{RangeKey, RangePipeline, RangeShape},
+    range_of::RangeOfPipeline,
     request::RangeRequest,
 };
 
 /// The pipelines of one view's range.
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct RangePasses {
-    pub reduction: Reduction,
+    /// `None` if the view takes the range of another one.
+    pub reduction: Option<Reduction>,
     /// The pass that smooths or holds the range, if it runs.
     pub smoothing: Option<CachedComputePipelineId>,
     /// The pass that divides the depths, if it runs.
     pub borders: Option<CachedComputePipelineId>,
     /// Whether the reduction counts a histogram of the depths.
     pub counts: bool,
+    /// The pass that finds the depth in the middle, if it runs.
+    pub middle: Option<CachedComputePipelineId>,
+    /// The pass that converts the range of another view, if it runs.
+    pub conversion: Option<CachedComputePipelineId>,
 }
 
 /// The pipelines of a reduction.
@@ -55,10 +62,14 @@ pub(crate) struct RangePipelines<'w> {
     ping_pongs: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
     smoothings: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
     borders: ResMut<'w, SpecializedComputePipelines<BorderPipeline>>,
+    middles: ResMut<'w, SpecializedComputePipelines<MiddlePipeline>>,
+    middle: Res<'w, MiddlePipeline>,
+    conversions: ResMut<'w, SpecializedComputePipelines<RangeOfPipeline>>,
     range: Res<'w, RangePipeline>,
     ping_pong: Res<'w, PingPongPipeline>,
     smoothing: Res<'w, SmoothingPipeline>,
     border: Res<'w, BorderPipeline>,
+    conversion: Res<'w, RangeOfPipeline>,
     adapter: Res<'w, RenderAdapterInfo>,
     device: Res<'w, RenderDevice>,
 }
@@ -69,7 +80,10 @@ impl RangePipelines<'_> {
         let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
         let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
         let reads_counts = request.histogram || request.borders;
-        let follows = (request.smooths || reads_counts) && has_compute;
+        let takes = request.leader.is_some() && has_compute;
+        let measures = !takes || reads_counts || request.readback || request.middle;
+        let smooths = request.smooths && !takes;
+        let follows = (smooths || reads_counts || request.middle) && has_compute;
         let counts = follows && shape.is_some() && (reads_counts || request.has_outliers());
         let kind = request.projection.kind();
         let key = RangeKey {
@@ -78,7 +92,7 @@ impl RangePipelines<'_> {
             histogram: counts,
             orthographic: counts && kind == ProjectionKind::Orthographic,
         };
-        let reduction = match shape {
+        let mut reduction = || match shape {
             Some(shape) => Reduction::Compute {
                 shape,
                 pipeline: self.ranges.specialize(cache, &self.range, (shape, key)),
@@ -94,6 +108,7 @@ impl RangePipelines<'_> {
                 }
             }
         };
+        let reduction = measures.then(&mut reduction);
         let smoothing =
             follows.then(|| (self.smoothings).specialize(cache, &self.smoothing, counts));
         let borders =
@@ -103,6 +118,11 @@ impl RangePipelines<'_> {
             smoothing,
             borders,
             counts,
+            middle: (request.middle && has_compute).then(|| {
+                let key = (request.samples, key.oblique);
+                (self.middles).specialize(cache, &self.middle, key)
+            }),
+            conversion: takes.then(|| (self.conversions).specialize(cache, &self.conversion, ())),
         }
     }
 }

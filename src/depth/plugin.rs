@@ -25,9 +25,11 @@ use super::{
     CameraCut, DepthHistogram, DepthMap, MaterialsReadRange, VisibleDepthRange,
     borders::BorderPipeline,
     follow::SmoothingPipeline,
+    middle::MiddlePipeline,
     ping_pong::PingPongPipeline,
     prepare::{RangeUniforms, ViewDepthRange, map_readbacks, prepare_view_ranges},
     range::RangePipeline,
+    range_of::RangeOfPipeline,
     readback::{RangeReadings, receive_ranges},
     reduce::reduce_depth_range,
     smoothing::count_cut,
@@ -62,7 +64,9 @@ impl DepthPlugin {
         load_shader_library!(app, "level.wgsl");
         embedded_asset!(app, "smoothing.wgsl");
         embedded_asset!(app, "borders.wgsl");
+        embedded_asset!(app, "middle.wgsl");
         embedded_asset!(app, "range.wgsl");
+        embedded_asset!(app, "range_of.wgsl");
         embedded_asset!(app, "ping_pong.wgsl");
 
         let readings = RangeReadings::default();
@@ -77,6 +81,8 @@ impl DepthPlugin {
             .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
             .init_gpu_resource::<SpecializedComputePipelines<SmoothingPipeline>>()
             .init_gpu_resource::<SpecializedComputePipelines<BorderPipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<MiddlePipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<RangeOfPipeline>>()
             .init_gpu_resource::<RangeUniforms>()
             .add_systems(RenderStartup, init_pipelines)
             .add_systems(
@@ -111,4 +117,6 @@ fn init_pipelines(
     commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
     commands.insert_resource(SmoothingPipeline::new(&assets));
     commands.insert_resource(BorderPipeline::new(&assets));
+    commands.insert_resource(MiddlePipeline::new(&assets));
+    commands.insert_resource(RangeOfPipeline::new(&assets));
 }

@@ -8,7 +8,7 @@ use std::sync::{
 use bevy::{
     ecs::{
         component::Component,
-        entity::Entity,
+        entity::{Entity, EntityHashMap},
         query::{With, Without},
         resource::Resource,
         system::{Commands, Query, Res, ResMut},
@@ -24,13 +24,18 @@ use bevy::{
 use super::{
     borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
+    frame::DepthProjection,
     passes::{RangePasses, Reduction},
     ping_pong::chain_textures,
     range::RangeView,
+    range_of::{ConversionUniform, TakenRange},
     readback::{RangeReadback, RangeReadings},
     request::RangeRequest,
 };
 use crate::gpu::buffer;
+
+/// Bytes of `VisibleRange` in `view.wgsl`.
+pub(crate) const RANGE_SIZE: u64 = 32;
 
 /// On a view in the render world: its visible range. It stays on the view, with the
 /// state of its smoothing, as long as a range is requested.
@@ -46,6 +51,8 @@ pub(crate) struct ViewDepthRange {
     pub chain: Vec<CachedTexture>,
     pub smoothing: Option<ViewSmoothing>,
     pub borders: Option<ViewBorders>,
+    /// The range of another view, which this one draws with.
+    pub taken: Option<TakenRange>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
     pub readback: Mutex<RangeReadback>,
@@ -61,6 +68,7 @@ impl ViewDepthRange {
             chain: Vec::new(),
             smoothing: None,
             borders: None,
+            taken: None,
             found: AtomicBool::new(false),
             readback: Mutex::default(),
         }
@@ -74,11 +82,39 @@ impl ViewDepthRange {
     /// Keys of the range that the depth map spans, after smoothing; `None` unless the
     /// passes of this frame were recorded.
     pub fn drawn(&self) -> Option<&Buffer> {
-        let keys = match &self.smoothing {
-            Some(smoothing) => &smoothing.drawn,
-            None => &self.keys,
+        let keys = match &self.taken {
+            Some(taken) => &taken.drawn,
+            None => self.own(),
         };
         self.found.load(Ordering::Relaxed).then_some(keys)
+    }
+
+    /// Keys of this view's own range, after smoothing.
+    fn own(&self) -> &Buffer {
+        (self.smoothing.as_ref()).map_or(&self.keys, |smoothing| &smoothing.drawn)
+    }
+
+    /// Prepares to take the range of another view, if this one is to: `own` and the projection of the
+    /// other one.
+    fn take(
+        &mut self,
+        leaders: &EntityHashMap<(Buffer, DepthProjection)>,
+        uniforms: &mut RangeUniforms,
+        device: &RenderDevice,
+    ) {
+        let leader = self
+            .request
+            .leader
+            .filter(|_| self.passes.conversion.is_some());
+        let Some((keys, projection)) = leader.and_then(|leader| leaders.get(&leader)) else {
+            self.taken = None;
+            return;
+        };
+        let taken = (self.taken.take()).filter(|taken| taken.from.id() == keys.id());
+        let mut taken = taken.unwrap_or_else(|| TakenRange::new(device, keys.clone()));
+        let conversion = ConversionUniform::new(projection, &self.request.projection);
+        taken.offset = uniforms.conversions.push(&conversion);
+        self.taken = Some(taken);
     }
 }
 
@@ -87,6 +123,7 @@ impl ViewDepthRange {
 pub(crate) struct RangeUniforms {
     pub views: DynamicUniformBuffer<RangeView>,
     pub smoothings: DynamicUniformBuffer<SmoothingUniform>,
+    pub conversions: DynamicUniformBuffer<ConversionUniform>,
 }
 
 impl Default for RangeUniforms {
@@ -95,7 +132,13 @@ impl Default for RangeUniforms {
         views.set_label(Some("comics_range_views"));
         let mut smoothings = DynamicUniformBuffer::default();
         smoothings.set_label(Some("comics_range_smoothings"));
-        Self { views, smoothings }
+        let mut conversions = DynamicUniformBuffer::default();
+        conversions.set_label(Some("comics_range_conversions"));
+        Self {
+            views,
+            smoothings,
+            conversions,
+        }
     }
 }
 
@@ -114,22 +157,43 @@ pub(crate) fn prepare_view_ranges(
 ) {
     uniforms.views.clear();
     uniforms.smoothings.clear();
+    uniforms.conversions.clear();
+    let mut new = Vec::new();
+    let mut leaders = EntityHashMap::default();
+    let mut lend = |range: &ViewDepthRange| {
+        let lent = (range.own().clone(), range.request.projection);
+        leaders.insert(range.request.camera, lent);
+    };
     for (entity, request, passes, range) in &mut views {
         let tools = (&*device, &mut *textures);
         match range {
-            Some(mut range) => range.prepare(request, *passes, &mut uniforms, tools),
+            Some(mut range) => {
+                range.prepare(request, *passes, &mut uniforms, tools);
+                lend(&range);
+            }
             None => {
                 let mut range = ViewDepthRange::new(&device, request, *passes);
                 range.prepare(request, *passes, &mut uniforms, tools);
-                commands.entity(entity).insert(range);
+                lend(&range);
+                new.push((entity, range));
             }
         }
+    }
+    for (.., range) in &mut views {
+        if let Some(mut range) = range {
+            range.take(&leaders, &mut uniforms, &device);
+        }
+    }
+    for (entity, mut range) in new {
+        range.take(&leaders, &mut uniforms, &device);
+        commands.entity(entity).insert(range);
     }
     for entity in &stale {
         commands.entity(entity).remove::<ViewDepthRange>();
     }
     uniforms.views.write_buffer(&device, &queue);
     uniforms.smoothings.write_buffer(&device, &queue);
+    uniforms.conversions.write_buffer(&device, &queue);
 }
 
 impl ViewDepthRange {
@@ -158,8 +222,8 @@ impl ViewDepthRange {
             self.borders = Some(ViewBorders::new(device));
         }
         self.chain = match passes.reduction {
-            Reduction::PingPong { .. } => chain_textures(textures, device, request.rect.zw()),
-            Reduction::Compute { .. } => Vec::new(),
+            Some(Reduction::PingPong { .. }) => chain_textures(textures, device, request.rect.zw()),
+            Some(Reduction::Compute { .. }) | None => Vec::new(),
         };
         self.view_offset = uniforms.views.push(&RangeView {
             rect: request.rect,
@@ -177,7 +241,7 @@ impl ViewDepthRange {
 fn keys_buffer(device: &RenderDevice) -> Buffer {
     let copied = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
     let usage = BufferUsages::STORAGE | BufferUsages::UNIFORM | copied;
-    buffer(device, "comics_depth_range", 16, usage)
+    buffer(device, "comics_depth_range", RANGE_SIZE, usage)
 }
 
 /// Maps the copies of this frame. Runs after they were submitted.

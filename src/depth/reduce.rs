@@ -17,6 +17,7 @@ use bevy::{
 
 use super::{
     ReductionMethod,
+    middle::{MiddleInputs, record_middle},
     passes::Reduction,
     ping_pong::{ChainSource, record_chain},
     prepare::{RangeUniforms, ViewDepthRange},
@@ -47,7 +48,9 @@ pub(crate) fn reduce_depth_range(
     };
     match frame.record(surfaces, &pipeline, &mut ctx) {
         Ok(method) => {
-            let outcome = StageOutcome::RanWith(method.name());
+            let outcome = method.map_or(StageOutcome::Skipped(SkipReason::RangeOf), |method| {
+                StageOutcome::RanWith(method.name())
+            });
             ledger.set(camera, ComicsStage::DepthRange, outcome);
             if range.smoothing.is_some() {
                 ledger.set(camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
@@ -75,8 +78,17 @@ impl Frame<'_> {
         surfaces: Surfaces,
         pipeline: &RangePipeline,
         ctx: &mut RenderContext,
-    ) -> Result<ReductionMethod, SkipReason> {
+    ) -> Result<Option<ReductionMethod>, SkipReason> {
         let not_ready = SkipReason::PipelineNotReady;
+        let conversion = match (self.range.passes.conversion, &self.range.taken) {
+            (Some(id), Some(taken)) => Some((
+                taken,
+                self.cache.get_compute_pipeline(id).ok_or(not_ready)?,
+                self.uniforms.conversions.binding().ok_or(not_ready)?,
+            )),
+            (Some(_), None) => return Err(not_ready),
+            (None, _) => None,
+        };
         let depth = surfaces.depth().ok_or(SkipReason::NoDepthPrepass)?;
         if depth.texture.sample_count() != self.range.request.samples {
             return Err(SkipReason::SampleCountMismatch);
@@ -94,15 +106,21 @@ impl Frame<'_> {
         if borders.is_some_and(|(id, _)| self.cache.get_compute_pipeline(id).is_none()) {
             return Err(not_ready);
         }
+        let middle = match self.range.passes.middle {
+            Some(id) => Some(self.cache.get_compute_pipeline(id).ok_or(not_ready)?),
+            None => None,
+        };
         let depth = &depth.default_view;
+        let views = view.clone();
         let method = match self.range.passes.reduction {
-            Reduction::Compute {
+            Some(Reduction::Compute {
                 shape,
                 pipeline: id,
-            } => self.dispatch((shape, id), (depth, view), pipeline, ctx)?,
-            Reduction::PingPong { first, next } => {
-                self.ping_pong((first, next), (depth, view), ctx)?
+            }) => Some(self.dispatch((shape, id), (depth, view), pipeline, ctx)?),
+            Some(Reduction::PingPong { first, next }) => {
+                Some(self.ping_pong((first, next), (depth, view), ctx)?)
             }
+            None => None,
         };
         if let Some((smoothing, pipeline, uniforms)) = smoothing {
             let device = ctx.render_device().clone();
@@ -122,8 +140,27 @@ impl Frame<'_> {
             if let Some((id, borders)) = borders {
                 let span = diagnostics.time_span(encoder, "comics_depth_borders");
                 let target = (&device, &mut *encoder);
-                borders.record(target, (self.cache, id), (uniforms, smoothing));
+                borders.record(target, (self.cache, id), (uniforms.clone(), smoothing));
                 span.end(encoder);
+            }
+            if let Some(pipeline) = middle {
+                let inputs = MiddleInputs {
+                    depth,
+                    samples: self.range.request.samples,
+                    views,
+                    view_offset: self.range.view_offset,
+                    smoothings: uniforms,
+                };
+                let target = (&device, &mut *encoder);
+                record_middle(target, (self.cache, pipeline), inputs, smoothing);
+            }
+        }
+        if let Some((taken, pipeline, uniforms)) = conversion {
+            let device = ctx.render_device().clone();
+            let target = (&device, ctx.command_encoder());
+            taken.record(target, self.cache, (pipeline, uniforms));
+            if let Some(smoothing) = &self.range.smoothing {
+                taken.keep_own(ctx.command_encoder(), &smoothing.drawn);
             }
         }
         self.range.found.store(true, Ordering::Relaxed);

@@ -24,12 +24,16 @@ pub(crate) struct RangeRequest {
     pub samples: u32,
     /// The depth map spans a smoothed or locked range, not that of this frame alone.
     pub smooths: bool,
+    /// The camera whose range this view takes.
+    pub leader: Option<Entity>,
     /// The camera has a `VisibleDepthRange`.
     pub readback: bool,
     /// The camera has a `DepthHistogram`.
     pub histogram: bool,
     /// Divide the visible depths into near, middle and far.
     pub borders: bool,
+    /// Find the depth in the middle.
+    pub middle: bool,
     /// Some material reads the range.
     #[cfg(feature = "toon")]
     pub materials: bool,

@@ -47,11 +47,18 @@ fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
 @group(0) @binding(2) var depth_texture: texture_2d<f32>;
 #endif
 #endif
-// xy: keys of the nearest and the farthest depth, see range.wgsl. zw: see borders.wgsl.
+struct VisibleRange {
+    // xy: of the nearest and the farthest depth, see range.wgsl. zw: see borders.wgsl.
+    keys: vec4<u32>,
+    // x: see middle.wgsl.
+    middle: vec4<f32>,
+}
 #ifdef VISIBLE_RANGE
-@group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
+@group(0) @binding(3) var<uniform> visible_range: VisibleRange;
 #else ifdef DEPTH_BORDERS
-@group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
+@group(0) @binding(3) var<uniform> visible_range: VisibleRange;
+#else ifdef MIDDLE_DEPTH
+@group(0) @binding(3) var<uniform> visible_range: VisibleRange;
 #endif
 
 // The pixel of the depth texture that belongs to a pixel of the viewport.
@@ -104,9 +111,10 @@ fn depth_frame() -> DepthFrame {
 #ifdef VISIBLE_RANGE
     // The ends may be subnormal, which arithmetic flushes to 0: then the map would divide
     // 0 by 0.
-    frame.near = max(bitcast<f32>(range_keys.x), 1.1754944e-38);
-    frame.far = max(bitcast<f32>(0u - range_keys.y), 1.1754944e-38);
-    if range_keys.x == 0u {
+    let keys = visible_range.keys;
+    frame.near = max(bitcast<f32>(keys.x), 1.1754944e-38);
+    frame.far = max(bitcast<f32>(0u - keys.y), 1.1754944e-38);
+    if keys.x == 0u {
         frame.flags |= EMPTY;
     }
 #endif
@@ -117,11 +125,18 @@ fn depth_frame() -> DepthFrame {
 // D at the border between near and middle and at that between middle and far; -1 if none are
 // known.
 fn depth_borders(frame: DepthFrame) -> vec2<f32> {
-    if range_keys.z == 0u {
+    if visible_range.keys.z == 0u {
         return vec2(-1.0);
     }
-    let ends = bitcast<vec2<f32>>(range_keys.zw);
+    let ends = bitcast<vec2<f32>>(visible_range.keys.zw);
     return vec2(depth_map(frame, ends.x).x, depth_map(frame, ends.y).x);
+}
+#endif
+
+#ifdef MIDDLE_DEPTH
+// Raw depth in the middle of the view, smoothed over time.
+fn middle_depth() -> f32 {
+    return visible_range.middle.x;
 }
 #endif
 

@@ -132,6 +132,8 @@ pub enum SkipReason {
     NoSuchMeshes,
     /// The depth map spans fixed distances, not the visible range.
     FixedRange,
+    /// The camera takes the visible range of another one ([`RangeOf`](crate::cameras::RangeOf)).
+    RangeOf,
     /// The view has one sample per pixel.
     SingleSampled,
     /// The device has no compute shaders, or too few storage textures or buffers for
@@ -173,6 +175,7 @@ impl fmt::Display for SkipReason {
             Self::NoSuchLines => "no such lines are requested",
             Self::NoSuchMeshes => "no transparent mesh in view asks for it",
             Self::FixedRange => "the range is fixed",
+            Self::RangeOf => "the range is that of another camera",
             Self::SingleSampled => "the view has one sample per pixel",
             Self::NoComputeShaders => {
                 "the device lacks compute shaders or storage textures and buffers"

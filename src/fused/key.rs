@@ -288,9 +288,14 @@ impl StylizeKey {
         self.needs.contains(Needs::DEPTH_BORDERS)
     }
 
-    /// Whether the buffer of the visible range is bound, which holds the borders too.
+    /// Whether the depth in the middle of the view is read.
+    fn middle(&self) -> bool {
+        self.needs.contains(Needs::MIDDLE_DEPTH)
+    }
+
+    /// Whether the buffer of the visible range is bound, which holds the borders and the middle too.
     pub fn reads_range(&self) -> bool {
-        self.visible_range || self.borders()
+        self.visible_range || self.borders() || self.middle()
     }
 
     /// Whether the places of objects in the depth map are read.
@@ -347,6 +352,7 @@ impl StylizeKey {
             (needs.contains(Needs::MAP), "MAP"),
             (self.visible_range, "VISIBLE_RANGE"),
             (self.borders(), "DEPTH_BORDERS"),
+            (self.middle(), "MIDDLE_DEPTH"),
             (self.oblique, "OBLIQUE"),
             (self.normals(), "NORMALS"),
             (self.ids(), "OBJECT_IDS"),

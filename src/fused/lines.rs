@@ -69,6 +69,8 @@ pub(super) fn line_request(
         fade: modifiers
             .fade
             .map(|fade| fade.uniform(facts.depth_axis, facts.depth_reference)),
+        middle: modifiers.fade.is_some_and(|fade| fade.distance.is_none())
+            && plan.needs().contains(Needs::MIDDLE_DEPTH),
         layers: modifiers.layers,
         simplification: modifiers.simplification,
         sheet: sheet(facts),
@@ -107,6 +109,7 @@ pub(super) fn plain_request(
         motion: false,
         fog: None,
         fade: None,
+        middle: false,
         layers: None,
         simplification: None,
         sheet: SheetUniform::default(),

@@ -4,7 +4,7 @@
 use crate::effect::{AnyEffect, EffectStage, EffectType, Needs};
 use std::fmt::Debug;
 
-use bevy::ecs::world::EntityRef;
+use bevy::ecs::{entity::Entity, world::EntityRef};
 
 use super::device::DeviceLacks;
 use crate::{
@@ -66,6 +66,10 @@ pub(crate) struct Plan {
     pub histogram: bool,
     /// Some material reads the smoothed visible range.
     pub materials: bool,
+    /// The camera whose visible range this one takes.
+    pub range_of: Option<Entity>,
+    /// Another camera takes the visible range of this one.
+    pub lends: bool,
     /// Effects change only the pixels that the camera has drawn.
     pub own_pixels: Option<OwnPixels>,
     pub beyond: BeyondPrepass,
@@ -314,6 +318,11 @@ impl Plan {
         } else {
             needs - Needs::OBJECT_DEPTHS
         };
+        let needs = if self.lacks.compute_shaders {
+            needs - Needs::MIDDLE_DEPTH
+        } else {
+            needs
+        };
         let of_objects = Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS;
         let needs = if self.unstyled || needs.intersects(of_objects) {
             needs | Needs::IDS
@@ -367,7 +376,7 @@ impl Plan {
     /// Whether the range depends on earlier frames: it is smoothed or locked.
     pub fn smooths(&self) -> bool {
         let map = self.reads_map() || self.lines_read_map();
-        (self.materials || (map && self.depth_map.mapping.follows_visible_range()))
+        (self.materials || self.lends || (map && self.depth_map.mapping.follows_visible_range()))
             && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
     }
 
@@ -376,17 +385,22 @@ impl Plan {
         self.readback
             || self.histogram
             || self.materials
-            || self.needs().contains(Needs::DEPTH_BORDERS)
+            || self.lends
+            || self
+                .needs()
+                .intersects(Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH)
             || (map && self.depth_map.mapping.follows_visible_range())
     }
 
     pub fn needs_depth(&self) -> bool {
-        let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS | Needs::DEPTH_BORDERS;
+        let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS;
+        let read = read | Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
             || self.marks
             || self.histogram
             || self.materials
+            || self.lends
             || self.lines.is_some()
             || self.needs().intersects(read)
             || view

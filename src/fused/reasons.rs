@@ -52,6 +52,9 @@ impl Plan {
             | ComicsStage::SearchTiles
             | ComicsStage::FindLines
             | ComicsStage::DrawLines => SkipReason::NoSuchLines,
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if self.range_of.is_some() => {
+                SkipReason::RangeOf
+            }
             ComicsStage::RangeSmoothing
                 if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
             {

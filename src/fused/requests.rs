@@ -261,9 +261,11 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         rect: scene.drawn(),
         samples,
         smooths: plan.smooths(),
+        leader: plan.range_of,
         readback: plan.readback,
         histogram: plan.histogram,
         borders: plan.needs().contains(Needs::DEPTH_BORDERS),
+        middle: plan.needs().contains(Needs::MIDDLE_DEPTH),
         #[cfg(feature = "toon")]
         materials: plan.materials,
         seconds: view.seconds,
@@ -278,11 +280,16 @@ impl Requests {
         let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
         let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
         let range = self.range.as_ref().is_some_and(|(_, passes)| {
-            let reduction = match passes.reduction {
+            let reduction = passes.reduction.is_some_and(|reduction| match reduction {
                 Reduction::Compute { pipeline, .. } => compute(pipeline),
                 Reduction::PingPong { first, next } => render(first) || render(next),
-            };
-            let later = [passes.smoothing, passes.borders];
+            });
+            let later = [
+                passes.smoothing,
+                passes.borders,
+                passes.middle,
+                passes.conversion,
+            ];
             reduction || later.into_iter().flatten().any(compute)
         });
         let lines = self.lines.as_ref();

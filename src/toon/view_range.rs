@@ -16,6 +16,7 @@ use bevy::{
         system::{Query, Res, ResMut},
     },
     image::Image,
+    log::warn_once,
     math::{Vec2, Vec3},
     render::{
         Render, RenderApp,
@@ -156,10 +157,13 @@ fn write_columns(
         return;
     };
     let mut written = Vec::new();
-    let read = views.iter().filter(|(.., request)| request.materials);
-    for (entity, view, request) in read.take(COLUMNS as usize) {
+    let mut read = views.iter().filter(|(.., request)| request.materials);
+    for (entity, view, request) in read.by_ref().take(COLUMNS as usize) {
         columns.0.insert(entity, written.len() as u32);
         written.push(column(view, request));
+    }
+    if read.next().is_some() {
+        warn_once!("in more than {COLUMNS} views, materials do not find the visible range");
     }
     if was_empty && written.is_empty() {
         return;

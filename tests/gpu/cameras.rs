@@ -6,9 +6,10 @@ use bevy::{
         visibility::RenderLayers,
     },
     math::Vec4,
+    post_process::effect_stack::LensDistortion,
     render::render_resource::AsBindGroup,
 };
-use bevy_comics::cameras::{BeyondPrepass, ComicOverlay, StyleMask, overlay_camera};
+use bevy_comics::cameras::{BeyondPrepass, ComicOverlay, RangeOf, StyleMask, overlay_camera};
 
 use crate::{prelude::*, small::Reshaped};
 
@@ -400,14 +401,114 @@ fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbour() {
         camera.viewport = Some(viewport);
         camera.clear_color = beside.into();
         small.settle();
-        let picture = small.picture();
-        assert_eq!(
-            picture.get_pixel(left - 1, 20).0[..3],
-            beside.to_srgba().to_u8_array()[..3]
-        );
-        image::imageops::crop_imm(&picture, left, 11, size.x, size.y).to_image()
+        image::imageops::crop_imm(&small.picture(), left, 11, size.x, size.y).to_image()
     });
     assert!(black == white);
+    assert_eq!(small.errors(), 0);
+}
+
+/// Where Bevy's `LensDistortion` with these settings reads the picture for a place; both from 0 to 1.
+fn bent(place: Vec2, lens: &LensDistortion) -> Vec2 {
+    let away = place - lens.center;
+    let k = lens.intensity * (away / away.length().max(1e-6)).abs().dot(lens.multiplier);
+    let place = away * (1.0 + k * away.length_squared()) / lens.scale + lens.center;
+    place.clamp(Vec2::ZERO, Vec2::ONE)
+}
+
+/// An empty second camera with `LensDistortion` bends the finished comic, lines and colours together.
+#[test]
+fn an_empty_camera_bends_the_finished_comic() {
+    let size = UVec2::new(192, 128);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(size, msaa);
+        small.style(&comic());
+        let comic = small.settle().picture();
+        let lens = LensDistortion::default();
+        let settings = (over_the_first(), lens.clone());
+        second(&mut small, settings, &ComicStyle::new());
+        let found = small.settle().picture();
+        let (mut moved, mut wrong) = (0, 0);
+        for (x, y, color) in found.enumerate_pixels() {
+            let place = (Vec2::new(x as f32, y as f32) + 0.5) / size.as_vec2();
+            let from = (bent(place, &lens) * size.as_vec2() - 0.5).as_ivec2();
+            let near = (-1..=2).flat_map(|v| (-1..=2).map(move |u| from + IVec2::new(u, v)));
+            let last = size.as_ivec2() - 1;
+            let near: Vec<_> = (near.map(|at| at.clamp(IVec2::ZERO, last).as_uvec2()))
+                .map(|at| comic.get_pixel(at.x, at.y).0)
+                .collect();
+            let fits = |channel: usize| {
+                let of = near.iter().map(|color| i32::from(color[channel]));
+                let (least, most) = of.fold((255, 0), |(a, b), v| (a.min(v), b.max(v)));
+                (least - 2..=most + 2).contains(&i32::from(color.0[channel]))
+            };
+            wrong += usize::from(!(0..3).all(fits));
+            moved += usize::from(comic.get_pixel(x, y) != color);
+        }
+        assert!(moved > 3000, "{msaa:?}: {moved}");
+        assert_eq!(wrong, 0, "{msaa:?}");
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// How many pixels of two pictures differ by more than 2 codes, within a rectangle from the left side.
+fn apart(a: &image::RgbaImage, b: &image::RgbaImage, width: u32) -> usize {
+    let pixels = a.enumerate_pixels().zip(b.pixels());
+    let inside = pixels.filter(|((x, ..), _)| *x < width);
+    inside
+        .filter(|((.., a), b)| a.0[0].abs_diff(b.0[0]) > 2)
+        .count()
+}
+
+/// A camera that sees something nearer has the depth map of another one, whatever its near plane is.
+#[test]
+fn a_camera_takes_the_range_of_another_one() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(DebugView::DepthMap);
+    let first = small.camera;
+    let expected = small.settle().picture();
+    // At the right side of the picture.
+    let at = Transform::from_xyz(1.53, 2.12, 5.11);
+    let near = small.put(Cuboid::from_length(0.2), unlit(Color::WHITE), at);
+    small.world().entity_mut(near).insert(own_layer());
+    let settings = Camera {
+        order: 1,
+        ..default()
+    };
+    let camera = second(&mut small, settings, &ComicStyle::new());
+    let both = RenderLayers::from_layers(&[0, 1]);
+    small
+        .world()
+        .entity_mut(camera)
+        .insert((both, DebugView::DepthMap));
+    let third = (Camera3d::default(), DebugView::DepthMap, RangeOf(first));
+    let third = small
+        .world()
+        .spawn((third, RenderTarget::None { size: size() }))
+        .id();
+    let measures = |small: &Small| {
+        let stages = small.headless.app.world().resource::<ComicsDiagnostics>();
+        let outcome = stages.cameras[&camera].outcome(ComicsStage::DepthRange);
+        outcome != Some(StageOutcome::Skipped(SkipReason::RangeOf))
+    };
+    let width = size().x / 2;
+    for (leader, near, takes) in [
+        (None, 0.1, false),
+        (Some(first), 0.1, true),
+        (Some(first), 0.02, true),
+        (Some(third), 0.1, true),
+        (Some(camera), 0.1, false),
+    ] {
+        let projection = Projection::Perspective(PerspectiveProjection { near, ..default() });
+        let mut entity = small.world().entity_mut(camera);
+        entity.insert(projection);
+        match leader {
+            Some(leader) => entity.insert(RangeOf(leader)),
+            None => entity.remove::<RangeOf>(),
+        };
+        let found = apart(&small.settle().picture(), &expected, width);
+        assert_eq!(measures(&small), !takes, "{leader:?}");
+        assert_eq!(found == 0, takes, "{leader:?}, {near}: {found}");
+    }
     assert_eq!(small.errors(), 0);
 }
 

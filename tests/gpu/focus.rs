@@ -286,6 +286,48 @@ fn the_middle_of_the_view_is_in_focus() {
     }
 }
 
+/// A thin wire before the middle does not take the focus, and a new distance is approached.
+#[test]
+fn the_focus_of_the_middle_is_steady() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let style = ComicStyle::new().with(Focus {
+        at: FocusAt::Center,
+        ..default()
+    });
+    // All pixels but those near the wire.
+    let beside = |picture: &image::RgbaImage| {
+        let [left, right] =
+            [0, 46].map(|x| image::imageops::crop_imm(picture, x, 0, 26, 48).to_image());
+        (left, right)
+    };
+    figure(&mut small, 5.0, 600.0);
+    let far = shot(&mut small, &style);
+    let wire = (Cuboid::new(0.017, 4.0, 0.001), unlit(Color::BLACK));
+    let wire = small.put(wire.0, wire.1, Transform::from_xyz(0.0087, 0.0, -1.0));
+    let with_wire = shot(&mut small, &style);
+    assert!(with_wire != far, "the wire is seen");
+    assert!(beside(&with_wire) == beside(&far));
+    small.world().despawn(wire);
+
+    small.clear();
+    figure(&mut small, 50.0, 600.0);
+    // 4 frames of a 60th of a second: the focus is still nearer than the figure.
+    small.headless.step(4);
+    let first = small.picture();
+    assert!(
+        first.get_pixel(36, 24).0[0] > 100,
+        "{:?}",
+        first.get_pixel(36, 24)
+    );
+    small.headless.step(120);
+    let last = small.picture();
+    assert!(first != last);
+    small.restart(Msaa::Off);
+    figure(&mut small, 50.0, 600.0);
+    assert!(shot(&mut small, &style) == last);
+    assert_eq!(small.errors(), 0);
+}
+
 /// Orthographic views: the reference is 1.2 times the height, here 48 pixels of one unit.
 #[test]
 fn an_orthographic_view_has_a_focus() {

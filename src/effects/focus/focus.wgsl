@@ -5,6 +5,9 @@
 
 #import bevy_comics::depth::map::is_background
 #import bevy_comics::depth::view::{inside_viewport, view}
+#ifdef MIDDLE_DEPTH
+#import bevy_comics::depth::view::middle_depth
+#endif
 #ifdef DEPTH
 #import bevy_comics::depth::view::{load_depth, sample_count}
 #endif
@@ -95,7 +98,11 @@ fn nearness_at(s: Focus, pixel: vec2<i32>) -> f32 {
 // Distance of the focus.
 fn focus_distance(s: Focus) -> f32 {
     if s.at_centre == 1u {
+#ifdef MIDDLE_DEPTH
+        let near = nearness_of(s, middle_depth());
+#else
         let near = nearness_at(s, view.viewport.xy + view.viewport.zw / 2);
+#endif
         return select(1.0 / near, -near, is_parallel(s));
     }
     return s.distance;

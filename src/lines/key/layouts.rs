@@ -1,19 +1,19 @@
 //! What the shaders of the line passes bind.
 
-use bevy::{
-    math::UVec4,
-    render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
-        StorageTextureAccess, TextureSampleType,
-        binding_types::{
-            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d,
-            texture_2d_multisampled, texture_storage_2d, uniform_buffer, uniform_buffer_sized,
-        },
+use std::num::NonZeroU64;
+
+use bevy::render::render_resource::{
+    BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, StorageTextureAccess,
+    TextureSampleType,
+    binding_types::{
+        storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_2d_multisampled,
+        texture_storage_2d, uniform_buffer, uniform_buffer_sized,
     },
 };
 
 use super::line_key::LineKey;
 use crate::{
+    depth::prepare::RANGE_SIZE,
     lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
@@ -28,7 +28,7 @@ impl LineKey {
         let multisampled = self.contains(Self::MULTISAMPLED_PICTURE);
         [
             (Self::DEPTH, float().build(2, stages)),
-            (Self::VISIBLE_RANGE | Self::DEPTH_BORDERS, range_entry()),
+            (Self::RANGE, range_entry()),
             (Self::OBJECT_STYLES, object_styles_entry()),
             (Self::NORMALS, float().build(7, stages)),
             (Self::OBJECT_IDS, ids_entry(false)),
@@ -208,7 +208,7 @@ fn written_buffers<const N: usize>(bindings: [u32; N]) -> [BindGroupLayoutEntry;
 
 /// The layout entry of the visible range, the same in all passes.
 pub(crate) fn range_entry() -> BindGroupLayoutEntry {
-    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
+    uniform_buffer_sized(false, NonZeroU64::new(RANGE_SIZE)).build(3, ShaderStages::FRAGMENT)
 }
 
 /// The layout entry of the pixels that own lines, in the fused pass.

@@ -122,6 +122,8 @@ bitflags! {
         const HARD = 1 << 59;
         /// What is drawn beyond a distance counts as sky.
         const SKY_BEYOND = 1 << 60;
+        /// Lines fade with the distance from what the middle of the view shows.
+        const MIDDLE_DEPTH = 1 << 61;
     }
 }
 
@@ -129,6 +131,11 @@ bitflags! {
 const MAP_FLAGS: u32 = 62;
 
 impl LineKey {
+    /// What is in the buffer of the visible range.
+    pub const RANGE: Self = Self::VISIBLE_RANGE
+        .union(Self::DEPTH_BORDERS)
+        .union(Self::MIDDLE_DEPTH);
+
     /// What walking and finding read of a view and its lines.
     const FOUND: Self = Self::SAME_SIZE
         .union(Self::OBLIQUE)
@@ -161,6 +168,7 @@ impl LineKey {
     const COMPUTED: Self = Self::WEIGHTS
         .union(Self::OUTER_WEIGHT)
         .union(Self::DEPTH_BORDERS)
+        .union(Self::MIDDLE_DEPTH)
         .union(Self::WEIGHS_BY_OBJECTS)
         .union(Self::FINDS_BY_OBJECTS)
         .union(Self::COMPLETED)
@@ -230,6 +238,7 @@ impl LineKey {
             (lines.ink_budget < 1.0, Self::BUDGET),
             (request.fog.is_some(), Self::FOG),
             (request.fade.is_some(), Self::DISTANCE_FADE),
+            (request.middle, Self::MIDDLE_DEPTH),
             (layers.is_some(), Self::IN_LAYERS),
             (layers.is_some_and(|l| l.finds_borders), Self::DEPTH_BORDERS),
             (fainter, Self::SIMPLIFIED_CREASES),
@@ -314,7 +323,8 @@ impl LineKey {
         let on_map = Self::PERSPECTIVE_WEIGHT | Self::IN_LAYERS | Self::SIMPLIFIED_CREASES;
         let reads = Self::DEPTH | Self::EDITS | self & Self::OBLIQUE;
         let by_objects = Self::OUTER_WEIGHT | Self::WEIGHS_BY_OBJECTS;
-        self & (lines | Self::WEIGHT | Self::WEIGHTS | Self::DEPTH_BORDERS)
+        let of_view = Self::DEPTH_BORDERS | Self::MIDDLE_DEPTH;
+        self & (lines | Self::WEIGHT | Self::WEIGHTS | of_view)
             | self.when(Self::FOLDS | Self::RIMS | Self::WEIGHT, reads)
             | self.when(Self::LIGHT_WEIGHT, Self::NORMALS)
             | self.when(Self::LIGHT_WEIGHT | Self::WIDTH_MAP, Self::SURFACE_WEIGHT)

@@ -13,6 +13,9 @@
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
 #ifdef DEPTH
 #import bevy_comics::depth::view::{set_view, texel_depth}
+#ifdef MIDDLE_DEPTH
+#import bevy_comics::depth::view::middle_depth
+#endif
 #endif
 #ifdef FOLDS
 #import bevy_comics::lines::fold::{Fold, fold_bend}
@@ -290,7 +293,11 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 #endif
     var left = vec2(factor, 1.0 - fog);
 #ifdef DISTANCE_FADE
+#ifdef MIDDLE_DEPTH
+    let middle = middle_depth();
+#else
     let middle = texel_depth(g.rect.xy + g.rect.zw / 2, 0);
+#endif
     left *= fade_factor(line_pass.fade, texel_depth(owner, 0), middle);
 #endif
 #ifdef IN_LAYERS

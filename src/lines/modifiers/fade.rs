@@ -9,8 +9,9 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 /// [`EffectContext::depth_reference`](crate::effect::EffectContext::depth_reference).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFade {
-    /// The distance at which lines are whole, in world units; `None`: that of what the pixel in the
-    /// middle of the view shows.
+    /// The distance at which lines are whole, in world units; `None`: that in the middle of the view,
+    /// which is smoothed if the effect needs
+    /// [`Needs::MIDDLE_DEPTH`](crate::effect::Needs::MIDDLE_DEPTH).
     pub distance: Option<f32>,
     /// How far from there lines are whole: natural logarithm of the ratio, or the fraction.
     pub clear: f32,

@@ -163,7 +163,7 @@ impl Inputs<'_> {
             widths: key.contains(LineKey::WIDTH_MAP),
         };
         self.texels()?.push(reads, &mut entries)?;
-        if key.intersects(LineKey::VISIBLE_RANGE | LineKey::DEPTH_BORDERS) {
+        if key.intersects(LineKey::RANGE) {
             let keys = self.range.and_then(ViewDepthRange::drawn);
             entries.push(entry(3, keys.ok_or(NOT_READY)?.as_entire_binding()));
         }

@@ -55,6 +55,8 @@ pub(crate) struct LineRequest {
     pub fog: Option<FogUniform>,
     /// How they fade with the distance from another one.
     pub fade: Option<LineFadeUniform>,
+    /// That distance is the one in the middle of the view, smoothed over time.
+    pub middle: bool,
     /// How they differ between the depth layers.
     pub layers: Option<LineLayers>,
     /// How they are simplified.

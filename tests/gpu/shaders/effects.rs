@@ -36,7 +36,7 @@ pub fn flag(name: String) -> Definition<'static> {
 }
 
 /// The definitions of needs.
-const NEEDS: [(Needs, &[&str]); 14] = [
+const NEEDS: [(Needs, &[&str]); 15] = [
     (Needs::MAP, &["MAP", "DEPTH"]),
     (Needs::DEPTH, &["DEPTH"]),
     (Needs::NORMALS, &["NORMALS"]),
@@ -49,6 +49,7 @@ const NEEDS: [(Needs, &[&str]); 14] = [
     (Needs::BOX_STATISTICS, &["CONTINUED", "BOX_STATISTICS"]),
     (Needs::AUX_SCALAR, &["AUX_SCALAR"]),
     (Needs::DEPTH_BORDERS, &["DEPTH_BORDERS"]),
+    (Needs::MIDDLE_DEPTH, &["MIDDLE_DEPTH"]),
     (
         Needs::OBJECT_ANCHORS,
         &["OBJECT_ANCHORS", "OBJECT_IDS", "OBJECT_STYLES"],

@@ -173,7 +173,7 @@ fn settling() -> Vec<Variant> {
         "| TAPER_WEIGHT",
         "| BUDGET",
         "| FOG",
-        "| DISTANCE_FADE",
+        "| DISTANCE_FADE | DISTANCE_FADE MIDDLE_DEPTH",
         "| IN_LAYERS | IN_LAYERS DEPTH_BORDERS | IN_LAYERS OBJECT_DEPTHS",
         "| SIMPLIFIED_CREASES | SIMPLIFIED_CREASES OBJECT_DEPTHS",
         "| VISIBLE_RANGE",

@@ -31,6 +31,8 @@ fn depths() -> Vec<Variant> {
         range(&["SUBGROUP"]),
         with_subsets("depth/smoothing.wgsl", &[], &["HISTOGRAM"]),
         with_subsets("depth/borders.wgsl", &[], &[]),
+        with_subsets("depth/middle.wgsl", &[], &["MULTISAMPLED", "OBLIQUE"]),
+        with_subsets("depth/range_of.wgsl", &[], &[]),
         with_subsets("depth/ping_pong.wgsl", &[], &first),
     ]
     .concat()

@@ -1,0 +1,55 @@
+//! Cameras that share a visible range.
+
+use bevy::{
+    camera::{Camera, Camera3d},
+    ecs::{
+        component::Component, entity::Entity, query::With, reflect::ReflectComponent,
+        system::Query, world::EntityRef,
+    },
+    log::warn_once,
+    reflect::Reflect,
+};
+
+/// Gives a camera the visible range of another one, smoothed as there: what is equally far away
+/// has the same place in the depth maps of both. For the second eye, the halves of a split screen,
+/// a minimap. The camera then does not measure a range of its own.
+///
+/// If the other camera has a lower [`Camera::order`], the range is that of the same frame, otherwise
+/// that of the frame before. It may have a `RangeOf` of its own; at most 8 in a row, without circles.
+/// The other camera must be active and have an effect; if not, and without compute shaders, the camera
+/// measures its own range. [`DepthHistogram`](crate::depth::DepthHistogram) and
+/// [`VisibleDepthRange`](crate::depth::VisibleDepthRange) of the camera count what it sees itself, and so
+/// do [`DepthLayers`](crate::DepthLayers).
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Component, Clone, PartialEq)]
+pub struct RangeOf(#[entities] pub Entity);
+
+/// Most components in a row.
+const LONGEST: usize = 8;
+
+/// The camera at the end of a row; `None` if there is none. `has_range`: whether a camera can lend its range.
+pub(super) fn leader(
+    camera: EntityRef,
+    cameras: &Query<EntityRef, With<Camera3d>>,
+    has_range: impl Fn(Entity) -> bool,
+) -> Option<Entity> {
+    let RangeOf(first) = camera.get()?;
+    let mut at = *first;
+    for _ in 0..LONGEST {
+        let Ok(next) = cameras.get(at) else {
+            break;
+        };
+        match next.get::<RangeOf>() {
+            Some(RangeOf(next)) => at = *next,
+            None if has_range(at) && next.get::<Camera>().is_some_and(|c| c.is_active) => {
+                return Some(at);
+            }
+            None => break,
+        }
+    }
+    let camera = camera.id();
+    warn_once!(
+        "`RangeOf`: {camera} measures its own range, because {at} is no active camera with effects"
+    );
+    None
+}
