@@ -387,23 +387,30 @@ fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbour() {
         ..default()
     };
     small.style(&ComicStyle::new().with(bands));
-    // The ground fills the view.
+    // Stripes of every tone fill the view.
     small.insert(Transform::from_xyz(0.0, 3.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::X));
-    let (left, size) = (41, UVec2::new(51, 41));
-    let [black, white] = [Color::BLACK, Color::WHITE].map(|beside| {
-        let viewport = Viewport {
-            physical_position: UVec2::new(left, 11),
-            physical_size: size,
-            ..default()
-        };
-        let mut camera = small.camera_mut();
-        let mut camera = camera.get_mut::<Camera>().expect("a camera");
-        camera.viewport = Some(viewport);
-        camera.clear_color = beside.into();
-        small.settle();
-        image::imageops::crop_imm(&small.picture(), left, 11, size.x, size.y).to_image()
+    for stripe in 0..64 {
+        let tone = stripe as f32 / 63.0;
+        let at = Transform::from_xyz(2.4 * (tone - 0.5), 1.2, 0.0);
+        let stripe = Cuboid::new(0.04, 0.1, 9.0);
+        small.put(stripe, unlit(Color::srgb(tone, tone, tone)), at);
+    }
+    let (left, top, height) = (41, 11, 41);
+    let mut camera = small.camera_mut();
+    let mut camera = camera.get_mut::<Camera>().expect("a camera");
+    camera.viewport = Some(Viewport {
+        physical_position: UVec2::new(left, top),
+        physical_size: UVec2::new(51, height),
+        ..default()
     });
-    assert!(black == white);
+    let picture = small.settle().picture();
+    let [first, second] = [left, left + 1].map(|x| {
+        let column = (top..top + height).map(|y| picture.get_pixel(x, y).0);
+        column.collect::<Vec<_>>()
+    });
+    let tones: HashSet<_> = second.iter().collect();
+    assert!(tones.len() > 4, "{tones:?}");
+    assert_eq!(first, second);
     assert_eq!(small.errors(), 0);
 }
 
