@@ -3,7 +3,7 @@
 use bevy::{
     app::{App, PostUpdate},
     camera::primitives::Aabb,
-    core_pipeline::prepass::{AlphaMask3dPrepass, Opaque3dPrepass},
+    core_pipeline::prepass::{AlphaMask3dPrepass, DeferredPrepass, Opaque3dPrepass},
     ecs::{
         change_detection::DetectChangesMut,
         component::Component,
@@ -13,6 +13,7 @@ use bevy::{
         resource::Resource,
         system::{Query, Res, ResMut},
     },
+    log::warn_once,
     math::{Mat4, Vec3},
     mesh::Mesh3d,
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -97,9 +98,15 @@ pub(super) fn remove_backdrops(
     backdrops: Res<Backdrops>,
     mut opaque: ResMut<ViewBinnedRenderPhases<Opaque3dPrepass>>,
     mut masked: ResMut<ViewBinnedRenderPhases<AlphaMask3dPrepass>>,
+    deferred: Query<(), With<DeferredPrepass>>,
 ) {
     if backdrops.0.is_empty() {
         return;
+    }
+    if !deferred.is_empty() {
+        warn_once!(
+            "a `Backdrop` needs a forward material: in a deferred one it stays in the depth prepass"
+        );
     }
     let meshes = || backdrops.0.keys().map(MainEntity::from);
     for phase in opaque.values_mut() {

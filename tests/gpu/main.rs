@@ -118,6 +118,7 @@ mod validation;
 mod vignette;
 mod visible_detail;
 mod walls;
+mod warnings;
 mod weights;
 mod wide_lines;
 mod window;
