@@ -12,7 +12,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
-                   parts, scene-parts, toon, growth, many-objects, peers,
+                   parts, scene-parts, toon, growth, many-objects, peers, peer-objects,
                    flicker or soak
   --tables         write the CSV files alone, without text and plots
   --render         measure nothing; write text and plots from the CSV files
@@ -20,7 +20,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
 Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
 and seconds of each section are written to sections.csv in the folder of the report.
 
-The section peers builds tools/peers, or starts the program that the variable PEERS_PROGRAM names,
+The sections peers and peer-objects build tools/peers; peers starts the program that the variable PEERS_PROGRAM names,
 also with --quick.";
 
 /// What the command line asks for.

@@ -133,6 +133,14 @@ impl Variant {
         }
     }
 
+    /// Whether it is timed in turns with others: those that a target compares.
+    fn takes_turns(self) -> bool {
+        matches!(
+            self,
+            Self::Prepasses | Self::Floor | Self::WithoutIds | Self::Outlines
+        )
+    }
+
     fn has_plugin(self) -> bool {
         !matches!(self, Self::WithoutPlugin | Self::UnseenWithoutPlugin)
     }
@@ -391,57 +399,77 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));
     let variants = Variant::ALL.map(|variant| (variant, false));
     let variants = run.some(6, variants.into_iter().chain(again));
+    // Those that are compared take turns, so that a slower minute of the machine slows all of them.
+    let groups: Vec<_> = variants
+        .chunk_by(|(a, _), (b, _)| a.takes_turns() && b.takes_turns())
+        .collect();
     for &count in counts {
-        for &(variant, again) in &variants {
-            // A frame of many cameras takes many times as long.
-            if variant.cameras() > 1 && count * variant.cameras() > 80_000 {
-                continue;
-            }
-            let mut crowd = Crowd::new(variant, count);
-            // Pipelines compile, and textures and buffers get their size.
-            crowd.headless.step(4);
-            for round in 0..run.rounds.min(3) {
-                let before = crowd.work().uploaded;
-                let mut all: Vec<_> = (0..frames).map(|frame| crowd.frame(frame)).collect();
-                all.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let (whole, stages) = all[all.len() / 2];
-                let ms = stages.map(|ms| format!("{ms:.3}"));
-                let [update, queue, batch, bind, encode] = &ms;
-                let whole = format!("{whole:.3}");
-                let name = variant.name();
-                let name = if again {
-                    format!("{name}; again")
-                } else {
-                    name.to_owned()
-                };
-                let materials = crowd.materials();
-                let ObjectWork {
-                    draw_calls,
-                    uploaded,
-                    ..
-                } = crowd.work();
-                let uploaded = (uploaded - before) / frames;
-                table.push(&[
-                    &count,
-                    &name,
-                    &round,
-                    &materials,
-                    &draw_calls,
-                    &uploaded,
-                    &whole,
-                    update,
-                    queue,
-                    batch,
-                    bind,
-                    encode,
-                ]);
-                if round == 0 {
-                    run.say(&format!(
-                        "{count} objects, {name}: {whole} ms, {ms:?}, {materials} materials, {draw_calls} draws of ids, {uploaded} B"
-                    ));
-                }
-            }
+        for group in &groups {
+            measure_group(run, &mut table, count, group, frames);
         }
     }
     run.save("many_objects_times", &table)
+}
+
+/// Measures variants in turns; those with `true` once more.
+fn measure_group(
+    run: &Run,
+    table: &mut Table,
+    count: usize,
+    group: &[(Variant, bool)],
+    frames: usize,
+) {
+    // A frame of many cameras takes many times as long.
+    let is_timed = |variant: Variant| variant.cameras() == 1 || count * variant.cameras() <= 80_000;
+    let timed = group.iter().filter(|(variant, _)| is_timed(*variant));
+    let mut crowds: Vec<_> = timed
+        .map(|&(variant, again)| (Crowd::new(variant, count), again))
+        .collect();
+    for (crowd, _) in &mut crowds {
+        // Pipelines compile, and textures and buffers get their size.
+        crowd.headless.step(4);
+    }
+    for round in 0..run.rounds.min(3) {
+        for (crowd, again) in &mut crowds {
+            let before = crowd.work().uploaded;
+            let mut all: Vec<_> = (0..frames).map(|frame| crowd.frame(frame)).collect();
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (whole, stages) = all[all.len() / 2];
+            let [update, queue, batch, bind, encode] = stages.map(|ms| format!("{ms:.3}"));
+            let whole = format!("{whole:.3}");
+            let name = crowd.variant.name();
+            let name = if *again {
+                format!("{name}; again")
+            } else {
+                name.to_owned()
+            };
+            let materials = crowd.materials();
+            let ObjectWork {
+                draw_calls,
+                uploaded,
+                ..
+            } = crowd.work();
+            let uploaded = (uploaded - before) / frames;
+            table.push(&[
+                &count,
+                &name,
+                &round,
+                &materials,
+                &draw_calls,
+                &uploaded,
+                &whole,
+                &update,
+                &queue,
+                &batch,
+                &bind,
+                &encode,
+            ]);
+            if round == 0 {
+                run.say(&format!(
+                    "{count} objects, {name}: {whole} ms, {materials} materials, \
+                     {draw_calls} draws of ids, {uploaded} B"
+                ));
+            }
+        }
+    }
 }

@@ -2,30 +2,45 @@
 
 use std::process::Command;
 
-use crate::{Run, rig};
+use crate::{Run, rig, table::Table};
 
 /// A variable with the path of the program, where it is built already.
 const PROGRAM: &str = "PEERS_PROGRAM";
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let built = std::env::var_os(PROGRAM);
-    if run.quick && built.is_none() {
+    if run.quick && std::env::var_os(PROGRAM).is_none() {
         run.say("left out: --quick does not build the other crates");
         return run.save("peer_times", &rig::times());
     }
-    let file = std::env::temp_dir().join("bevy_comics_peer_times.csv");
+    run.save("peer_times", &measured("times", run.rounds, run.frames)?)
+}
+
+/// Frames with many objects; no rows where that is left out.
+pub fn many_objects(run: &Run) -> Result<(), String> {
+    let table = if run.quick || std::env::var_os(PROGRAM).is_some() {
+        run.say("left out: the other crates");
+        Table::new(&["objects", "variant", "round", "whole"])
+    } else {
+        measured("many", 3, 9)?
+    };
+    run.save("peer_object_times", &table)
+}
+
+/// What the program measures.
+fn measured(mode: &str, rounds: usize, frames: usize) -> Result<Table, String> {
+    let file = std::env::temp_dir().join(format!("bevy_comics_peers_{mode}.csv"));
+    let built = std::env::var_os(PROGRAM);
     let status = built
         .map_or_else(through_cargo, Command::new)
-        .arg("times")
+        .arg(mode)
         .arg(&file)
-        .args([run.rounds, run.frames].map(|n| n.to_string()))
+        .args([rounds, frames].map(|n| n.to_string()))
         .status()
         .map_err(|error| format!("the other crates do not start: {error}"))?;
     if !status.success() {
         return Err("the other crates were not measured; their output is above".into());
     }
-    let table = crate::table::Table::load(&file)?;
-    run.save("peer_times", &table)
+    Table::load(&file)
 }
 
 /// Builds the program and starts it.

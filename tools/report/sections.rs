@@ -155,6 +155,12 @@ pub const SECTIONS: [Section; 22] = [
         "5. Other crates, in the same app and run",
     ),
     section(
+        "peer-objects",
+        peers::many_objects,
+        "How do frames of other crates grow with the number of objects?",
+        "Many objects",
+    ),
+    section(
         "flicker",
         flicker::measure,
         "Do colours by distance flicker when things come and go?",

@@ -4,15 +4,18 @@
 //! ```text
 //! cargo run --manifest-path tools/peers/Cargo.toml
 //! cargo run --manifest-path tools/peers/Cargo.toml -- times FILE ROUNDS FRAMES
+//! cargo run --manifest-path tools/peers/Cargo.toml -- many FILE ROUNDS FRAMES
 //! cargo run --manifest-path tools/peers/Cargo.toml -- sheet FILE.png
 //! ```
 //!
-//! The second form times passes for the report: see `times.rs`. The third one draws a figure with
-//! three materials under four kinds of light: see `sheet.rs`.
+//! The second form times passes for the report, the third one frames with many objects: see
+//! `times.rs` and `many.rs`. The last one draws a figure with three materials under four kinds of
+//! light: see `sheet.rs`.
 //!
 //! The true lines come from raw depth, normals and object ids of the same scene at four times
 //! the resolution: see `truth.rs` of the examples' shared code.
 
+mod many;
 mod sheet;
 mod times;
 
@@ -197,12 +200,15 @@ fn sphere(headless: &mut Headless) -> Transform {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if let [mode, file, rounds, frames] = &arguments[..]
-        && mode == "times"
-    {
+    if let [mode, file, rounds, frames] = &arguments[..] {
         let number = |text: &String| text.parse().expect("a number of rounds and of frames");
-        std::fs::write(file, times::measure(number(rounds), number(frames)))
-            .unwrap_or_else(|error| panic!("{file}: {error}"));
+        let (rounds, frames) = (number(rounds), number(frames));
+        let rows = match mode.as_str() {
+            "times" => times::measure(rounds, frames),
+            "many" => many::measure(&[1_000, 20_000, 60_000], rounds, frames),
+            _ => panic!("{mode} is neither times nor many"),
+        };
+        std::fs::write(file, rows).unwrap_or_else(|error| panic!("{file}: {error}"));
         return;
     }
     if let [mode, file] = &arguments[..]

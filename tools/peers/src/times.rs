@@ -181,7 +181,7 @@ const VARIANTS: &[(&str, Put)] = &[
     ("bevy_comics: faithful silhouettes", |b| {
         b.style(&outlines(Outlines {
             silhouettes: Some(Silhouettes {
-                form: Equations::Faithful,
+                equations: Equations::Faithful,
                 ..default()
             }),
             ..Outlines::SILHOUETTES

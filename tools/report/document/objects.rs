@@ -102,5 +102,30 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         out,
         "\nToon materials of 1000 equal toon scenes: {most:.0}.\n"
     );
+    let peers = load(folder, "peer_object_times")?;
+    let rows: Vec<_> = peers.rows.iter().collect();
+    if rows.is_empty() {
+        out.push_str("Other crates were not measured on these scenes.\n\n");
+        return Ok(());
+    }
+    out.push_str(
+        "Other crates on the same scenes, each in an app of its own, in turns: whole frames in \
+         milliseconds, and as multiples of those with the engine's prepasses.\n\n| frame |",
+    );
+    let counts = peers.distinct(&rows, "objects");
+    for count in &counts {
+        let _ = write!(out, " {count} |");
+    }
+    let _ = writeln!(out, "\n|---|{}", "---|".repeat(counts.len()));
+    for variant in peers.distinct(&rows, "variant") {
+        let _ = write!(out, "| {variant} |");
+        for count in &counts {
+            let [whole, least] =
+                [&*variant, PREPASSES].map(|variant| of(&peers, count, variant, "whole"));
+            let _ = write!(out, " {whole:.1}, {:.2} |", whole / least);
+        }
+        out.push('\n');
+    }
+    out.push('\n');
     Ok(())
 }
