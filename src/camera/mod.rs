@@ -109,7 +109,8 @@ fn plan_cameras(
     let types = registry.types();
     let plan = |camera: EntityRef| {
         let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
-        let plan = Plan::new(camera, shown, &types, objects.changes())?;
+        let mut plan = Plan::new(camera, shown, &types, objects.changes())?;
+        plan.materials = materials.0;
         lacks.warn();
         Some(plan.on_device(lacks))
     };
@@ -129,7 +130,6 @@ fn plan_cameras(
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
         if let Some(plan) = &mut plan {
-            plan.materials = materials.0;
             plan.range_of = leaders.get(&camera.id()).copied();
             plan.lends = leaders.values().any(|leader| *leader == camera.id());
             plan.own_pixels = own_pixels(camera, plan, &styled);
@@ -161,7 +161,7 @@ fn leaders(
             .any(|(known, plan)| *known == camera && plan.is_some())
     };
     let leader = |(camera, plan): &(Entity, Option<Plan>)| {
-        plan.as_ref().filter(|plan| plan.needs_range())?;
+        plan.as_ref().filter(|plan| plan.reads_range())?;
         let leader = range_of::leader(cameras.get(*camera).ok()?, cameras, has_plan)?;
         Some((*camera, leader))
     };

@@ -10,14 +10,19 @@ use bevy::{
     reflect::Reflect,
 };
 
+use crate::style::Comic;
+
 /// Gives a camera the visible range of another one, smoothed as there: what is equally far away
 /// has the same place in the depth maps of both. For the second eye, the halves of a split screen,
 /// a minimap. The camera then does not measure a range of its own.
 ///
 /// If the other camera has a lower [`Camera::order`], the range is that of the same frame, otherwise
 /// that of the frame before. It may have a `RangeOf` of its own; at most 8 in a row, without circles.
-/// The other camera must be active and have an effect; if not, and without compute shaders, the camera
-/// measures its own range. [`DepthHistogram`](crate::depth::DepthHistogram) and
+/// The other camera must be active and have an effect; if not, in its first frame, and without
+/// compute shaders, the camera measures its own range.
+///
+/// The camera's own [`DepthMap`](crate::DepthMap) says how the range is mapped, but for its `smoothing`
+/// and `locked`: equal colours need equal mappings. [`DepthHistogram`](crate::depth::DepthHistogram) and
 /// [`VisibleDepthRange`](crate::depth::VisibleDepthRange) of the camera count what it sees itself, and so
 /// do [`DepthLayers`](crate::DepthLayers).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,23 +38,30 @@ pub(super) fn leader(
     cameras: &Query<EntityRef, With<Camera3d>>,
     has_range: impl Fn(Entity) -> bool,
 ) -> Option<Entity> {
-    let RangeOf(first) = camera.get()?;
-    let mut at = *first;
+    let RangeOf(mut at) = *camera.get()?;
     for _ in 0..LONGEST {
         let Ok(next) = cameras.get(at) else {
             break;
         };
-        match next.get::<RangeOf>() {
-            Some(RangeOf(next)) => at = *next,
-            None if has_range(at) && next.get::<Camera>().is_some_and(|c| c.is_active) => {
+        if let Some(RangeOf(next)) = next.get() {
+            at = *next;
+            continue;
+        }
+        if next.get::<Camera>().is_some_and(|camera| camera.is_active) {
+            if has_range(at) {
                 return Some(at);
             }
-            None => break,
+            // Its style may still load.
+            if next.contains::<Comic>() {
+                return None;
+            }
         }
+        break;
     }
     let camera = camera.id();
     warn_once!(
-        "`RangeOf`: {camera} measures its own range, because {at} is no active camera with effects"
+        "`RangeOf`: {camera} measures its own range: its row does not end with an active camera with \
+         effects within {LONGEST} steps, but comes to {at}"
     );
     None
 }

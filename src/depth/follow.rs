@@ -30,6 +30,7 @@ const SNAP: u32 = 2;
 const HOLD: u32 = 4;
 const DESPIKE: u32 = 8;
 const RESET: u32 = 16;
+const BEGIN: u32 = 32;
 
 /// `Smoothing` of `level.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -67,7 +68,7 @@ impl SmoothingUniform {
         map: &DepthMap,
         projection: &DepthProjection,
         seconds: f32,
-        [snap, reset]: [bool; 2],
+        [snap, reset, begin]: [bool; 3],
     ) -> Self {
         let smoothing = map.smoothing.unwrap_or(RangeSmoothing::OFF);
         let orthographic = projection.kind() == ProjectionKind::Orthographic;
@@ -83,6 +84,7 @@ impl SmoothingUniform {
             flags: flag(orthographic, ORTHOGRAPHIC)
                 | flag(snap, SNAP)
                 | flag(reset, RESET)
+                | flag(begin, BEGIN)
                 | flag(map.locked, HOLD)
                 | flag(smoothing.despike, DESPIKE),
         }
@@ -142,9 +144,16 @@ impl ViewSmoothing {
         }
     }
 
-    /// The uniform of this frame. Compares the request with that of the last frame.
-    pub fn uniform(&mut self, request: &RangeRequest, size: UVec2) -> SmoothingUniform {
-        if self.origin != (request.cuts, size) {
+    /// The uniform of this frame. Compares the request with that of the last frame. `begin`: the
+    /// middle was not found in that one.
+    pub fn uniform(
+        &mut self,
+        request: &RangeRequest,
+        size: UVec2,
+        begin: bool,
+    ) -> SmoothingUniform {
+        let is_other = self.origin != (request.cuts, size);
+        if is_other {
             self.origin = (request.cuts, size);
             self.snap = AtomicBool::new(true);
         }
@@ -153,7 +162,8 @@ impl ViewSmoothing {
         }
         self.projection = request.projection;
         self.locked = request.map.locked;
-        let starts = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
+        let [snap, reset] = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
+        let starts = [snap, reset, begin || is_other];
         SmoothingUniform::new(&request.map, &request.projection, request.seconds, starts)
     }
 

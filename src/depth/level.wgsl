@@ -13,6 +13,9 @@ const DESPIKE: u32 = 8u;
 // Discard the state, even with HOLD: the projection changed, and with it what raw depth
 // means.
 const RESET: u32 = 16u;
+// Discard the middle: after a cut, after a change of the view's size, and after frames that did not
+// need it. Set in one frame.
+const BEGIN: u32 = 32u;
 
 struct Smoothing {
     // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective. 0 otherwise.

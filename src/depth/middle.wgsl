@@ -3,7 +3,7 @@
 // Finds the depth in the middle of a view: the median of 25 places, smoothed over time. One
 // invocation per view and frame; its state stays on the GPU.
 
-#import bevy_comics::depth::level::{HOLD, RESET, SNAP, Smoothing, bits_of, level_of}
+#import bevy_comics::depth::level::{BEGIN, RESET, Smoothing, bits_of, level_of}
 #import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
 
 // Places along a side of the square, and their distance as a fraction of the view's height.
@@ -66,7 +66,7 @@ fn median() -> u32 {
 fn follow() {
     let goal = median();
     let last = drawn.middle.x;
-    let starts = (smoothing.flags & RESET) != 0u || (smoothing.flags & (SNAP | HOLD)) == SNAP;
+    let starts = (smoothing.flags & (RESET | BEGIN)) != 0u;
     var bits = goal;
     // Between a surface and the sky there is nothing to approach.
     if drawn.middle.y != 0u && !starts && goal != 0u && last != 0u {

@@ -81,7 +81,7 @@ impl RangePipelines<'_> {
         let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
         let reads_counts = request.histogram || request.borders;
         let takes = request.leader.is_some() && has_compute;
-        let measures = !takes || reads_counts || request.readback || request.middle;
+        let measures = !takes || reads_counts || request.readback;
         let smooths = request.smooths && !takes;
         let follows = (smooths || reads_counts || request.middle) && has_compute;
         let counts = follows && shape.is_some() && (reads_counts || request.has_outliers());

@@ -102,19 +102,21 @@ impl ViewDepthRange {
         uniforms: &mut RangeUniforms,
         device: &RenderDevice,
     ) {
-        let leader = self
-            .request
-            .leader
-            .filter(|_| self.passes.conversion.is_some());
-        let Some((keys, projection)) = leader.and_then(|leader| leaders.get(&leader)) else {
+        let takes = self.passes.conversion.is_some();
+        let Some(leader) = self.request.leader.filter(|_| takes) else {
             self.taken = None;
             return;
         };
-        let taken = (self.taken.take()).filter(|taken| taken.from.id() == keys.id());
-        let mut taken = taken.unwrap_or_else(|| TakenRange::new(device, keys.clone()));
-        let conversion = ConversionUniform::new(projection, &self.request.projection);
-        taken.offset = uniforms.conversions.push(&conversion);
-        self.taken = Some(taken);
+        // If the other one has no range any more, this view has the last one until it has its own.
+        if let Some((keys, projection)) = leaders.get(&leader) {
+            let taken = (self.taken.take()).filter(|taken| taken.from.id() == keys.id());
+            let mut taken = taken.unwrap_or_else(|| TakenRange::new(device, keys.clone()));
+            taken.conversion = ConversionUniform::new(projection, &self.request.projection);
+            self.taken = Some(taken);
+        }
+        if let Some(taken) = &mut self.taken {
+            taken.offset = uniforms.conversions.push(&taken.conversion);
+        }
     }
 }
 
@@ -211,7 +213,8 @@ impl ViewDepthRange {
                 .smoothing
                 .get_or_insert_with(|| ViewSmoothing::new(device, request, size));
             smoothing.keep_histogram(device, passes.counts);
-            let uniform = smoothing.uniform(request, size);
+            let begin = self.passes.middle.is_none();
+            let uniform = smoothing.uniform(request, size, begin);
             smoothing.uniform_offset = uniforms.smoothings.push(&uniform);
         } else {
             self.smoothing = None;

@@ -44,9 +44,10 @@ impl ConversionUniform {
 pub(crate) struct TakenRange {
     /// Keys of the other view's range.
     pub from: Buffer,
+    pub conversion: ConversionUniform,
     /// The same in raw depth of this view.
     pub drawn: Buffer,
-    /// Offset of the [`ConversionUniform`] in bytes.
+    /// Offset of `conversion` in bytes.
     pub offset: u32,
 }
 
@@ -56,6 +57,7 @@ impl TakenRange {
         let usage = BufferUsages::STORAGE | BufferUsages::UNIFORM | copied;
         Self {
             from,
+            conversion: ConversionUniform::default(),
             drawn: buffer(device, "comics_range_of", RANGE_SIZE, usage),
             offset: 0,
         }

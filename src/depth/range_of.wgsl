@@ -16,6 +16,10 @@ struct Conversion {
 // Bits of this view's raw depth, clamped to what the reduction can find.
 fn converted(bits: u32) -> u32 {
     let d = bitcast<f32>(bits);
+    // Behind the eye: under an orthographic projection, near planes may be.
+    if conversion.pole < 0.0 && d + conversion.pole >= 0.0 {
+        return bitcast<u32>(1.0);
+    }
     let value = select(d, 1.0 / (d + conversion.pole), conversion.is_reciprocal == 1u);
     return bitcast<u32>(clamp(conversion.factor * value + conversion.summand, 1.1754944e-38, 1.0));
 }

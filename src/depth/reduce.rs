@@ -52,7 +52,7 @@ pub(crate) fn reduce_depth_range(
                 StageOutcome::RanWith(method.name())
             });
             ledger.set(camera, ComicsStage::DepthRange, outcome);
-            if range.smoothing.is_some() {
+            if range.smoothing.is_some() && method.is_some() {
                 ledger.set(camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
             }
             frame.read_back(&ledger, &mut ctx);
@@ -127,16 +127,14 @@ impl Frame<'_> {
             let diagnostics = ctx.diagnostic_recorder();
             let diagnostics = diagnostics.as_deref();
             let encoder = ctx.command_encoder();
-            let span = diagnostics.time_span(encoder, "comics_range_smoothing");
-            let keys = &self.range.keys;
-            smoothing.record(
-                &device,
-                encoder,
-                self.cache,
-                pipeline,
-                (uniforms.clone(), keys),
-            );
-            span.end(encoder);
+            // Without a reduction there is nothing but the middle.
+            if method.is_some() {
+                let span = diagnostics.time_span(encoder, "comics_range_smoothing");
+                let keys = &self.range.keys;
+                let inputs = (uniforms.clone(), keys);
+                smoothing.record(&device, encoder, self.cache, pipeline, inputs);
+                span.end(encoder);
+            }
             if let Some((id, borders)) = borders {
                 let span = diagnostics.time_span(encoder, "comics_depth_borders");
                 let target = (&device, &mut *encoder);
@@ -151,8 +149,10 @@ impl Frame<'_> {
                     view_offset: self.range.view_offset,
                     smoothings: uniforms,
                 };
+                let span = diagnostics.time_span(encoder, "comics_middle_depth");
                 let target = (&device, &mut *encoder);
                 record_middle(target, (self.cache, pipeline), inputs, smoothing);
+                span.end(encoder);
             }
         }
         if let Some((taken, pipeline, uniforms)) = conversion {

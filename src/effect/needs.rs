@@ -65,10 +65,10 @@ bitflags! {
         /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
         /// `OBJECT_DEPTHS` is not defined in WGSL.
         const OBJECT_DEPTHS = 1 << 13;
-        /// The raw depth in the middle of the view, by
-        /// `bevy_comics::depth::view::middle_depth`: the median of 25 places within 2 % of the
-        /// view's height, with a time constant of 0.15 s; 0 where there is sky. Without compute
-        /// shaders it asks for nothing, and `MIDDLE_DEPTH` is not defined in WGSL.
+        /// The raw depth in the middle of the view, by `bevy_comics::depth::view::middle_depth`: the
+        /// median of 25 places in a square of 2 % of the view's height, with a time constant of 0.15
+        /// s; 0 where there is sky. Without compute shaders it asks for nothing, and `MIDDLE_DEPTH` is
+        /// not defined in WGSL.
         const MIDDLE_DEPTH = 1 << 14;
     }
 }

@@ -27,7 +27,7 @@ use super::{
     scene::{Scene, SceneTextures},
 };
 use crate::{
-    depth::{passes::RangePasses, request::RangeRequest},
+    depth::{passes::RangePasses, prepare::ViewDepthRange, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     lines::{LinePasses, LineRequest, ViewMarks},
     objects::{DepthWanted, IdRequest, IdsWanted},
@@ -62,6 +62,8 @@ pub(crate) fn choose_plans(
         Option<&ViewMarks>,
     )>,
     stale: Query<(Entity, Option<&ViewMarks>), (With<ReadyPlan>, NotDrawn)>,
+    // Those of the last frame.
+    ranges: Query<&ViewDepthRange>,
     (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
     mut services: Services,
     mut cache: ResMut<PipelineCache>,
@@ -74,7 +76,11 @@ pub(crate) fn choose_plans(
             remove(entity, marks, &mut commands);
             continue;
         }
-        let scene = Scene::new(extracted, prepass, raster);
+        let has_range = |leader: &Entity| ranges.iter().any(|r| r.request.camera == *leader);
+        let scene = Scene {
+            leader: view.plan.range_of.filter(has_range),
+            ..Scene::new(extracted, prepass, raster)
+        };
         let wanted = scene.reduce(&view.plan);
         report(&ledger, &registry, (view, &wanted), &scene);
 

@@ -34,8 +34,8 @@ impl DeviceLacks {
     pub fn warn(self) {
         if self.compute_shaders {
             warn_once!(
-                "this device has no compute shaders: visible ranges are not smoothed, locked or \
-                 trimmed, borders of depth layers are not found, and lines are drawn without \
+                "this device has no compute shaders: visible ranges are not smoothed, locked, \
+                 trimmed or taken from other cameras (`RangeOf`), the focus of the middle is not smoothed, borders of depth layers are not found, and lines are drawn without \
                  hysteresis, closed gaps, ink budget, held frames, weights and fog"
             );
         }

@@ -375,21 +375,24 @@ impl Plan {
 
     /// Whether the range depends on earlier frames: it is smoothed or locked.
     pub fn smooths(&self) -> bool {
-        let map = self.reads_map() || self.lines_read_map();
-        (self.materials || self.lends || (map && self.depth_map.mapping.follows_visible_range()))
+        (self.lends || self.reads_range())
             && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
     }
 
     pub fn needs_range(&self) -> bool {
-        let map = self.reads_map() || self.lines_read_map();
         self.readback
             || self.histogram
-            || self.materials
             || self.lends
             || self
                 .needs()
                 .intersects(Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH)
-            || (map && self.depth_map.mapping.follows_visible_range())
+            || self.reads_range()
+    }
+
+    /// Whether something is drawn by the visible range.
+    pub fn reads_range(&self) -> bool {
+        let map = self.reads_map() || self.lines_read_map();
+        self.materials || (map && self.depth_map.mapping.follows_visible_range())
     }
 
     pub fn needs_depth(&self) -> bool {

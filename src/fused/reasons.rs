@@ -52,7 +52,9 @@ impl Plan {
             | ComicsStage::SearchTiles
             | ComicsStage::FindLines
             | ComicsStage::DrawLines => SkipReason::NoSuchLines,
-            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if self.range_of.is_some() => {
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing
+                if self.range_of.is_some() && !self.lacks.compute_shaders =>
+            {
                 SkipReason::RangeOf
             }
             ComicsStage::RangeSmoothing

@@ -261,7 +261,7 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         rect: scene.drawn(),
         samples,
         smooths: plan.smooths(),
-        leader: plan.range_of,
+        leader: plan.range_of.and(scene.leader),
         readback: plan.readback,
         histogram: plan.histogram,
         borders: plan.needs().contains(Needs::DEPTH_BORDERS),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
+    ecs::entity::Entity,
     math::{UVec2, UVec4, Vec2},
     render::{
         camera::TemporalJitter,
@@ -34,6 +35,8 @@ pub(super) struct Scene {
     pub drawn_depth: bool,
     /// Transparent meshes are drawn with their ids.
     pub ids_queued: bool,
+    /// The camera whose visible range the view takes, if that has one.
+    pub leader: Option<Entity>,
 }
 
 /// The textures of a view, and what is drawn into copies of them.
@@ -70,6 +73,7 @@ impl Scene {
             motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
             drawn_depth: drawn.is_some_and(can_be_read),
             ids_queued: queued.is_some_and(|queued| queued.ids),
+            leader: None,
         }
     }
 

@@ -14,10 +14,13 @@ use bevy::{
         system::{Query, Res, ResMut},
     },
     log::warn_once,
+    material::OpaqueRendererMethod,
     math::{Mat4, Vec3},
     mesh::Mesh3d,
+    pbr::{PreparedMaterial, RenderMaterialInstances},
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
+        erased_render_asset::ErasedRenderAssets,
         render_phase::ViewBinnedRenderPhases,
         sync_world::{MainEntity, MainEntityHashSet},
     },
@@ -99,16 +102,23 @@ pub(super) fn remove_backdrops(
     mut opaque: ResMut<ViewBinnedRenderPhases<Opaque3dPrepass>>,
     mut masked: ResMut<ViewBinnedRenderPhases<AlphaMask3dPrepass>>,
     deferred: Query<(), With<DeferredPrepass>>,
+    (instances, materials): (
+        Res<RenderMaterialInstances>,
+        Res<ErasedRenderAssets<PreparedMaterial>>,
+    ),
 ) {
     if backdrops.0.is_empty() {
         return;
     }
-    if !deferred.is_empty() {
-        warn_once!(
-            "a `Backdrop` needs a forward material: in a deferred one it stays in the depth prepass"
-        );
-    }
     let meshes = || backdrops.0.keys().map(MainEntity::from);
+    let is_deferred = |mesh: MainEntity| {
+        let instance = instances.instances.get(&mesh);
+        let material = instance.and_then(|instance| materials.get(instance.asset_id));
+        material.is_some_and(|m| m.properties.render_method == OpaqueRendererMethod::Deferred)
+    };
+    if !deferred.is_empty() && meshes().any(is_deferred) {
+        warn_once!("a `Backdrop` with a deferred material stays in the depth prepass");
+    }
     for phase in opaque.values_mut() {
         meshes().for_each(|mesh| phase.remove(mesh));
     }

@@ -1,9 +1,13 @@
 //! Styles over a camera's own style.
 
-use bevy::ecs::{
-    component::Component,
-    system::EntityCommands,
-    world::{EntityRef, EntityWorldMut},
+use bevy::{
+    asset::AssetId,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        system::EntityCommands,
+        world::{EntityRef, EntityWorldMut},
+    },
 };
 
 use super::ComicStyle;
@@ -22,6 +26,18 @@ pub(super) struct StyleLayer {
     /// The result, as it was written to the camera's components.
     written: ComicStyle,
 }
+
+/// On a camera in volumes.
+#[derive(Component, Clone, Debug, PartialEq)]
+pub(super) struct PlaceStyle {
+    /// The volumes from below, and how much of each is seen.
+    pub volumes: Vec<SeenVolume>,
+    /// The style that was applied to the camera before.
+    pub below: Option<ComicStyle>,
+}
+
+/// A volume, its style, and how much of it is seen.
+pub(super) type SeenVolume = (Entity, AssetId<ComicStyle>, f32);
 
 impl StyleLayer {
     /// The camera's own style, with what the game has changed since the style was
@@ -128,15 +144,17 @@ impl ComicStyle {
     pub fn edit(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| {
-            let own = own_look(&camera);
-            style.write(&mut camera);
-            if camera.contains::<StyleLayer>() {
-                let written = style.clone();
-                camera.insert(StyleLayer {
-                    own,
-                    style,
-                    written,
-                });
+            let mut own = own_look(&camera);
+            let layer = camera.get::<StyleLayer>().cloned();
+            match (layer, camera.take::<PlaceStyle>()) {
+                (Some(layer), Some(mut place)) => {
+                    let edited = place.below.as_mut().unwrap_or(&mut own);
+                    edited.take_edits(&layer.written, &style);
+                    lay_over(&mut camera, own, layer.style, style);
+                    camera.insert(place);
+                }
+                (Some(_), None) => lay_over(&mut camera, own, style.clone(), style),
+                (None, _) => style.write(&mut camera),
             }
         });
     }
@@ -144,12 +162,29 @@ impl ComicStyle {
     pub(super) fn lay_over(self, camera: &mut EntityWorldMut) {
         let own = own_look(camera);
         let written = self.over(&own);
-        written.write(camera);
-        camera.insert(StyleLayer {
-            own,
-            style: self,
-            written,
-        });
+        lay_over(camera, own, self, written);
+    }
+
+    /// Changes what differs between two complete styles.
+    fn take_edits(&mut self, before: &Self, after: &Self) {
+        for effect in after.effects.iter() {
+            let before = before.by_name(effect.effect_type().name);
+            if before.is_none_or(|before| *before != *effect) {
+                self.insert_any(effect.boxed());
+            }
+        }
+        for effect in before.effects.iter() {
+            let name = effect.effect_type().name;
+            if after.by_name(name).is_none() {
+                self.remove_by_name(name);
+                if self.partial {
+                    self.off.insert(name);
+                }
+            }
+        }
+        if before.depth_map != after.depth_map {
+            self.depth_map = after.depth_map;
+        }
     }
 
     /// Makes the camera's components those of this style, as a complete one.
@@ -167,6 +202,21 @@ impl ComicStyle {
             effect.insert_into(camera);
         }
     }
+}
+
+/// Makes the camera look like a complete style. `style` says what of it the camera loses with it.
+pub(super) fn lay_over(
+    camera: &mut EntityWorldMut,
+    own: ComicStyle,
+    style: ComicStyle,
+    written: ComicStyle,
+) {
+    written.write(camera);
+    camera.insert(StyleLayer {
+        own,
+        style,
+        written,
+    });
 }
 
 /// The camera's style without the style that was applied to it.

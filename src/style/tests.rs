@@ -343,6 +343,57 @@ fn volumes_lie_over_the_style_that_was_applied_last() {
 }
 
 #[test]
+fn what_volumes_say_nothing_about_belongs_to_the_game() {
+    let (mut app, camera) = app();
+    let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+    let volume = StyleVolume {
+        style: styles.add(ComicStyle::new().with(Vignette::default()).partial()),
+        margin: 1.0,
+        ..StyleVolume::default()
+    };
+    let wide = styles.add(ComicStyle::new().with(outlines(3.0)));
+    let volume = (
+        volume,
+        GlobalTransform::IDENTITY,
+        InheritedVisibility::VISIBLE,
+    );
+    let volume = app.world_mut().spawn(volume).id();
+    app.world_mut().entity_mut(camera).insert(InStyleVolumes);
+    let width = |look: &ComicStyle| look.get::<Outlines>().map(|lines| lines.width);
+    look_at(&mut app, camera, 0.9);
+    let added = (outlines(4.0), Desaturation::default());
+    app.world_mut().entity_mut(camera).insert(added);
+    let look = look_at(&mut app, camera, 0.8);
+    assert_eq!((width(&look), look.effects.iter().count()), (Some(4.0), 3));
+    app.world_mut().entity_mut(camera).remove::<Desaturation>();
+    let mut edited = look_at(&mut app, camera, 0.7);
+    assert_eq!(
+        (width(&edited), edited.effects.iter().count()),
+        (Some(4.0), 2)
+    );
+
+    // A panel edits what it sees; the volume stays a volume.
+    edited.insert(outlines(6.0));
+    edited.edit(&mut app.world_mut().commands().entity(camera));
+    let look = look_at(&mut app, camera, 0.9);
+    let amount = look.get::<Vignette>().map(|corners| corners.amount);
+    assert_eq!((width(&look), look.effects.iter().count()), (Some(6.0), 2));
+    assert!(amount < edited.get::<Vignette>().map(|corners| corners.amount));
+    let outside = look_at(&mut app, camera, 9.0);
+    assert_eq!(
+        (width(&outside), outside.effects.iter().count()),
+        (Some(6.0), 1)
+    );
+
+    look_at(&mut app, camera, 0.0);
+    app.world_mut()
+        .get_mut::<StyleVolume>(volume)
+        .expect("a volume")
+        .style = wide;
+    assert_eq!(width(&look_at(&mut app, camera, 0.0)), Some(3.0));
+}
+
+#[test]
 fn partial_styles_are_files_too() {
     let text = "(version: 3, partial: true, contours: None, outlines: (width: 3.0))";
     let style = ComicStyle::from_ron(text).expect("readable");

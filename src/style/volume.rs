@@ -20,7 +20,7 @@ use bevy::{
 
 use super::{
     ComicStyle, StyleTransition,
-    layer::{StyleLayer, applied_style, own_look},
+    layer::{PlaceStyle, SeenVolume, StyleLayer, applied_style, lay_over, own_look},
 };
 
 /// A region with a style of its own: the unit cube under the entity's transform, as of Bevy's
@@ -28,8 +28,9 @@ use super::{
 ///
 /// How much of the style is seen depends only on where the camera is, so it is the same at every
 /// frame rate and in both directions. Of several volumes, one with a higher priority lies over the
-/// others: each is [blended](ComicStyle::blend) into what is below it. A hidden volume, one whose
-/// style has not loaded, and one without a render layer of the camera count as absent.
+/// others, of equal ones that of the later entity: each is [blended](ComicStyle::blend) into what is
+/// below it. A hidden volume, one that is scaled to 0, one whose style has not loaded, and one
+/// without a render layer of the camera count as absent.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -69,15 +70,6 @@ pub struct StyleVolume {
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct InStyleVolumes;
 
-/// On a camera in volumes.
-#[derive(Component, Clone, Debug, PartialEq)]
-pub(super) struct PlaceStyle {
-    /// The volumes from below, and how much of each is seen.
-    volumes: Vec<(Entity, f32)>,
-    /// The style that was applied to the camera before.
-    below: Option<ComicStyle>,
-}
-
 /// How much of a volume is seen from a place, 0 to 1.
 fn weight(volume: &Affine3A, margin: f32, eye: Vec3A) -> f32 {
     let half = Vec3A::splat(0.5);
@@ -112,7 +104,7 @@ type StyledCamera<'w> = (
 
 pub(super) fn style_by_place(
     mut commands: Commands,
-    volumes: Query<Volume>,
+    places: Query<Volume>,
     cameras: Query<StyledCamera, Or<(With<InStyleVolumes>, With<PlaceStyle>)>>,
     tick: SystemChangeTick,
     mut events: MessageReader<AssetEvent<ComicStyle>>,
@@ -124,9 +116,7 @@ pub(super) fn style_by_place(
     });
     let changed: Vec<_> = changed.collect();
     for (entity, place, layers, (takes_part, in_transition), layer, known) in &cameras {
-        let mut camera = commands.entity(entity);
         if in_transition {
-            camera.remove::<PlaceStyle>();
             continue;
         }
         // Another style was applied meanwhile, over that of the volumes.
@@ -136,7 +126,7 @@ pub(super) fn style_by_place(
             })
         });
         let layers = layers.unwrap_or_default();
-        let mut seen: Vec<_> = (volumes.iter().filter(|_| takes_part))
+        let mut seen: Vec<_> = (places.iter().filter(|_| takes_part))
             .filter(|(.., visibility, on)| {
                 visibility.get() && on.unwrap_or_default().intersects(layers)
             })
@@ -148,11 +138,11 @@ pub(super) fn style_by_place(
             .collect();
         seen.sort_by_key(|(order, ..)| *order);
         let edited = (seen.iter()).any(|(.., volume, _)| changed.contains(&volume.style.id()));
-        let weights: Vec<_> = seen
+        let volumes: Vec<_> = seen
             .iter()
-            .map(|((_, volume), weight, ..)| (*volume, *weight))
+            .map(|((_, entity), weight, volume, _)| (*entity, volume.style.id(), *weight))
             .collect();
-        let same = (known.as_ref()).map_or(weights.is_empty(), |known| known.volumes == weights);
+        let same = (known.as_ref()).map_or(volumes.is_empty(), |known| known.volumes == volumes);
         if same && !is_new && !edited {
             continue;
         }
@@ -161,10 +151,12 @@ pub(super) fn style_by_place(
         let parts: Vec<_> = seen
             .map(|(_, weight, _, style)| (style.clone(), weight))
             .collect();
-        camera.queue(move |mut camera: EntityWorldMut| {
-            let below = below.unwrap_or_else(|| applied_style(&camera));
-            apply(&mut camera, &parts, below, weights);
-        });
+        commands
+            .entity(entity)
+            .queue(move |mut camera: EntityWorldMut| {
+                let below = below.unwrap_or_else(|| applied_style(&camera));
+                apply(&mut camera, &parts, below, volumes);
+            });
     }
 }
 
@@ -173,7 +165,7 @@ fn apply(
     camera: &mut EntityWorldMut,
     parts: &[(ComicStyle, f32)],
     below: Option<ComicStyle>,
-    volumes: Vec<(Entity, f32)>,
+    volumes: Vec<SeenVolume>,
 ) {
     if parts.is_empty() {
         camera.remove::<PlaceStyle>();
@@ -184,13 +176,14 @@ fn apply(
         return;
     }
     let own = own_look(camera);
-    let mut look = below
-        .as_ref()
-        .map_or_else(|| own.clone(), |below| below.over(&own));
-    for (style, weight) in parts {
-        look = look.blend(&style.over(&look), *weight);
+    // What all of them say nothing about belongs to the game.
+    let mut style = below.clone().unwrap_or_else(|| ComicStyle::new().partial());
+    let mut look = style.over(&own);
+    for (part, weight) in parts {
+        look = look.blend(&part.over(&look), *weight);
+        style = part.over(&style);
     }
-    look.lay_over(camera);
+    lay_over(camera, own, style, look);
     camera.insert(PlaceStyle { volumes, below });
 }
 

@@ -492,6 +492,9 @@ fn a_camera_takes_the_range_of_another_one() {
         .world()
         .spawn((third, RenderTarget::None { size: size() }))
         .id();
+    let nowhere = RenderTarget::None { size: size() };
+    let unseen = (Camera3d::default(), DebugView::DepthMap, nowhere);
+    let unseen = small.world().spawn(unseen).id();
     let measures = |small: &Small| {
         let stages = small.headless.app.world().resource::<ComicsDiagnostics>();
         let outcome = stages.cameras[&camera].outcome(ComicsStage::DepthRange);
@@ -504,6 +507,7 @@ fn a_camera_takes_the_range_of_another_one() {
         (Some(first), 0.02, true),
         (Some(third), 0.1, true),
         (Some(camera), 0.1, false),
+        (Some(unseen), 0.1, false),
     ] {
         let projection = Projection::Perspective(PerspectiveProjection { near, ..default() });
         let mut entity = small.world().entity_mut(camera);

@@ -6,6 +6,7 @@ use bevy::{
     camera::ClearColorConfig,
     core_pipeline::prepass::DeferredPrepass,
     light::VolumetricFog,
+    material::OpaqueRendererMethod,
     post_process::effect_stack::{ChromaticAberration, LensDistortion},
 };
 use bevy_comics::{
@@ -58,7 +59,17 @@ fn draw_all() {
     let mut small = Small::alone(options, Msaa::Off);
     let target = small.headless.render_target();
     let first = small.camera;
-    small.insert((Outlines::default(), LensDistortion::default()));
+    small.insert((
+        Outlines::default(),
+        LensDistortion::default(),
+        DeferredPrepass,
+    ));
+    let deferred = StandardMaterial {
+        opaque_render_method: OpaqueRendererMethod::Deferred,
+        ..default()
+    };
+    let sky = small.put(Sphere::new(50.0), deferred, Transform::IDENTITY);
+    small.world().entity_mut(sky).insert(Backdrop::default());
     let world = small.world();
     world.spawn((Camera2d, Outlines::default()));
     let nowhere = RenderTarget::None { size: size() };
@@ -66,7 +77,7 @@ fn draw_all() {
     let plain = world
         .spawn((Camera3d::default(), target.clone(), Msaa::Off))
         .id();
-    world.spawn((nowhere, Backdrop::default(), DeferredPrepass));
+    world.spawn(nowhere);
     let shared = Camera {
         order: 2,
         clear_color: ClearColorConfig::None,
@@ -82,6 +93,7 @@ fn draw_all() {
     world.spawn((Camera3d::default(), target, Msaa::Off, shared, mask));
     world.entity_mut(first).insert(VolumetricFog::default());
     small.headless.step(3);
+    small.camera_mut().remove::<DeferredPrepass>();
     small.insert((Outlines::PIXELS, Msaa::Sample4));
     small.headless.step(3);
 }

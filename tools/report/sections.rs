@@ -38,7 +38,7 @@ const fn section(
 const WHOLE: &str = "Whole and steady lines";
 
 /// All sections, in the order in which they are measured.
-pub const SECTIONS: [Section; 22] = [
+pub const SECTIONS: [Section; 23] = [
     MACHINE,
     section(
         "ranges",
