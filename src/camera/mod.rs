@@ -38,6 +38,7 @@ use crate::{
     effect::EffectRegistry,
     fused::{DeviceLacks, Plan},
     objects::ObjectStyles,
+    origin::WorldOrigin,
     schedule::{ComicsSystems, RunImpacts},
 };
 pub use light::KeyLight;
@@ -61,6 +62,7 @@ impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         overlay::build(app);
         app.register_type::<KeyLight>()
+            .register_type::<WorldOrigin>()
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
@@ -96,7 +98,7 @@ fn plan_cameras(
     cameras: Query<EntityRef, With<Camera3d>>,
     registry: Res<EffectRegistry>,
     objects: Res<ObjectStyles>,
-    materials: Res<MaterialsReadRange>,
+    (materials, origin): (Res<MaterialsReadRange>, Option<Res<WorldOrigin>>),
     (device, adapter): (Option<Res<RenderDevice>>, Option<Res<RenderAdapterInfo>>),
     primary_window: Query<Entity, With<PrimaryWindow>>,
 ) {
@@ -126,6 +128,7 @@ fn plan_cameras(
         let mut entity = commands.entity(camera.id());
         if let Some(plan) = &mut plan {
             plan.materials = materials.0;
+            plan.has_origin = origin.is_some();
             plan.own_pixels = own_pixels(camera, plan, &styled);
         }
         match (plan, known) {

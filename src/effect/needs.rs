@@ -65,6 +65,9 @@ bitflags! {
         /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
         /// `OBJECT_DEPTHS` is not defined in WGSL.
         const OBJECT_DEPTHS = 1 << 13;
+        /// The true place of the world: `WORLD_ORIGIN` is defined in WGSL while the app has a
+        /// [`WorldOrigin`](crate::cameras::WorldOrigin), see [`EffectContext`](super::EffectContext).
+        const WORLD_ORIGIN = 1 << 14;
     }
 }
 
@@ -74,5 +77,6 @@ impl Needs {
         .union(Self::PICTURE)
         .union(Self::BLUE_NOISE)
         .union(Self::BOX_STATISTICS)
-        .union(Self::AUX_SCALAR);
+        .union(Self::AUX_SCALAR)
+        .union(Self::WORLD_ORIGIN);
 }

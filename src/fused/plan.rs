@@ -66,6 +66,8 @@ pub(crate) struct Plan {
     pub histogram: bool,
     /// Some material reads the smoothed visible range.
     pub materials: bool,
+    /// The app has a `WorldOrigin`.
+    pub has_origin: bool,
     /// Effects change only the pixels that the camera has drawn.
     pub own_pixels: Option<OwnPixels>,
     pub beyond: BeyondPrepass,
@@ -308,6 +310,11 @@ impl Plan {
             needs
         } else {
             needs - Needs::OBJECT_ANCHORS
+        };
+        let needs = if self.has_origin {
+            needs
+        } else {
+            needs - Needs::WORLD_ORIGIN
         };
         let needs = if self.has_ids() {
             needs
