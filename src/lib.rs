@@ -46,7 +46,7 @@
 //! | [`style`] | errors and events of styles, transitions |
 //! | [`effects`] | modes of the effects, such as [`HalftoneMode`](effects::HalftoneMode) |
 //! | [`lines`] | settings of outlines, such as [`LineWeight`](lines::LineWeight) |
-//! | [`cameras`] | several cameras: overlays, masks |
+//! | [`cameras`] | several cameras: overlays, masks; floating origins |
 //! | [`depth`] | the depth map, its smoothing and its reduction |
 //! | `objects` | components for single meshes (feature `objects`, on by default) |
 //! | `toon` | the toon material (feature `toon`, on by default) |
@@ -78,6 +78,7 @@ mod motion_lines;
 pub mod objects;
 #[cfg(not(feature = "objects"))]
 mod objects;
+mod origin;
 mod plugin;
 mod readback;
 mod samples;
@@ -110,10 +111,11 @@ pub use style::{Comic, ComicStyle, StyleTransition, presets};
 #[cfg(feature = "toon")]
 pub use toon::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
 
-/// Several cameras: pictures over pictures.
+/// Several cameras: pictures over pictures. Cameras in big worlds.
 pub mod cameras {
     pub use crate::camera::{ComicOverlay, RangeOf, overlay_camera};
     pub use crate::composite::{BeyondPrepass, StyleMask};
+    pub use crate::origin::WorldOrigin;
 }
 
 /// What the crate's own tests read; not part of its interface.

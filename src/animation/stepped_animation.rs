@@ -19,6 +19,7 @@ use bevy::{
         world::{EntityRef, World},
     },
     light::{DirectionalLight, PointLight, SpotLight},
+    math::{Affine3A, DVec3, Vec3A},
     mesh::{Mesh3d, skinning::SkinnedMesh},
     pbr::PreviousGlobalTransform,
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -28,6 +29,7 @@ use bevy::{
 
 use crate::{
     clock,
+    origin::WorldOrigin,
     settings::{FieldRange, clamp_or_default},
 };
 
@@ -86,6 +88,7 @@ pub(super) fn hold_while_extracting(render_app: &mut SubApp) {
 struct Poses {
     roots: Option<QueryState<(Entity, &'static SteppedAnimation)>>,
     held: EntityHashMap<Held>,
+    origin: DVec3,
     /// The true transforms, while the held ones are in the world.
     saved: Vec<Saved>,
 }
@@ -119,9 +122,21 @@ impl Poses {
         if members.is_empty() && self.held.is_empty() {
             return;
         }
+        let origin = WorldOrigin::of(world.get_resource());
+        let shift = Vec3A::from((self.origin - origin).as_vec3());
+        self.origin = origin;
         let mut known = std::mem::take(&mut self.held);
         for (entity, drawing) in members {
-            let old = known.remove(&entity);
+            let mut old = known.remove(&entity);
+            if let Some(held) = old.as_mut().filter(|_| shift != Vec3A::ZERO) {
+                // Not what was shown, with the camera's old place.
+                let pose = held.pose.affine();
+                held.pose = Affine3A {
+                    translation: pose.translation + shift,
+                    ..pose
+                }
+                .into();
+            }
             if let Some(held) = Held::new(world.entity(entity), old, drawing) {
                 self.held.entry(entity).or_insert(held);
             }

@@ -24,6 +24,7 @@ use crate::{
     effect::EffectTarget,
     fused::{Plan, ViewPlan},
     objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
+    origin::WorldOrigin,
 };
 
 pub(super) fn extract_views(
@@ -42,12 +43,13 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, writes, lights, fogs, places): (
+    (objects, writes, lights, fogs, places, origin): (
         Extract<Res<ObjectStyles>>,
         Extract<Res<DepthWrites>>,
         Extract<Lights>,
         Extract<Fogs>,
         Extract<Query<&GlobalTransform>>,
+        Extract<Option<Res<WorldOrigin>>>,
     ),
     #[cfg(feature = "objects")] (backdrops, boxes): (
         Extract<Res<Backdrops>>,
@@ -62,6 +64,7 @@ pub(super) fn extract_views(
 ) {
     seen.clear();
     let to_light = lights.to_light();
+    let origin = WorldOrigin::of(origin.as_deref());
     for (entity, render_entity, camera, asked, projection, (cuts, target)) in &cameras {
         if !camera.is_active {
             continue;
@@ -85,6 +88,7 @@ pub(super) fn extract_views(
             number: asked.number,
             projection: DepthProjection::new(&clip_from_view, projection),
             clip_from_view,
+            origin,
             scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
             widest_object: objects.max_width(),
             to_light,

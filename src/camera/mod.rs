@@ -39,6 +39,7 @@ use crate::{
     effect::EffectRegistry,
     fused::{DeviceLacks, Plan},
     objects::ObjectStyles,
+    origin::WorldOrigin,
     schedule::{ComicsSystems, RunImpacts},
 };
 pub use light::KeyLight;
@@ -64,6 +65,7 @@ impl Plugin for CameraPlugin {
         overlay::build(app);
         app.register_type::<KeyLight>()
             .register_type::<RangeOf>()
+            .register_type::<WorldOrigin>()
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
@@ -99,7 +101,7 @@ fn plan_cameras(
     cameras: Query<EntityRef, With<Camera3d>>,
     registry: Res<EffectRegistry>,
     objects: Res<ObjectStyles>,
-    materials: Res<MaterialsReadRange>,
+    (materials, origin): (Res<MaterialsReadRange>, Option<Res<WorldOrigin>>),
     (device, adapter): (Option<Res<RenderDevice>>, Option<Res<RenderAdapterInfo>>),
     primary_window: Query<Entity, With<PrimaryWindow>>,
 ) {
@@ -132,6 +134,7 @@ fn plan_cameras(
         if let Some(plan) = &mut plan {
             plan.range_of = leaders.get(&camera.id()).copied();
             plan.lends = leaders.values().any(|leader| *leader == camera.id());
+            plan.has_origin = origin.is_some();
             plan.own_pixels = own_pixels(camera, plan, &styled);
         }
         match (plan, known) {

@@ -1,6 +1,6 @@
 //! What an effect is told about the view that it is drawn on.
 
-use bevy::math::{Mat4, UVec2, UVec4, Vec2, Vec3};
+use bevy::math::{DVec3, Mat4, UVec2, UVec4, Vec2, Vec3};
 
 use crate::{clock::drawing_seed, lines::Sheet};
 
@@ -25,6 +25,9 @@ pub struct EffectContext {
     pub relative_from_clip: Mat4,
     /// World position of the eye.
     pub eye: Vec3,
+    /// True position of the origin of the world that is rendered, in world units; zero without a
+    /// [`WorldOrigin`](crate::cameras::WorldOrigin).
+    pub world_origin: DVec3,
     /// Unit vector towards the light that lines and strokes follow
     /// ([`KeyLight`](crate::KeyLight)), in world space.
     pub to_light: Vec3,
@@ -66,6 +69,7 @@ impl Default for EffectContext {
             clip_from_world: Mat4::IDENTITY,
             relative_from_clip: Mat4::IDENTITY,
             eye: Vec3::ZERO,
+            world_origin: DVec3::ZERO,
             to_light: Vec3::Y,
             cuts: 0,
             seconds: 0.0,

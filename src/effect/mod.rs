@@ -35,7 +35,7 @@ pub use context::EffectContext;
 pub use needs::Needs;
 pub use registry::{EffectPlugin, EffectRegistry};
 pub use set::EffectSet;
-pub(crate) use strokes::Strokes;
+pub(crate) use strokes::{Strokes, dot_eyes, stroke_eyes};
 pub use target::EffectTarget;
 pub(crate) use target::place_in;
 pub use variants::Variants;

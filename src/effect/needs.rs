@@ -70,6 +70,9 @@ bitflags! {
         /// s; 0 where there is sky. Without compute shaders it asks for nothing, and `MIDDLE_DEPTH` is
         /// not defined in WGSL.
         const MIDDLE_DEPTH = 1 << 14;
+        /// The true place of the world: `WORLD_ORIGIN` is defined in WGSL while the app has a
+        /// [`WorldOrigin`](crate::cameras::WorldOrigin), see [`EffectContext`](super::EffectContext).
+        const WORLD_ORIGIN = 1 << 15;
     }
 }
 
@@ -79,5 +82,6 @@ impl Needs {
         .union(Self::PICTURE)
         .union(Self::BLUE_NOISE)
         .union(Self::BOX_STATISTICS)
-        .union(Self::AUX_SCALAR);
+        .union(Self::AUX_SCALAR)
+        .union(Self::WORLD_ORIGIN);
 }

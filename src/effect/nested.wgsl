@@ -22,15 +22,50 @@ fn level_of(least: f32) -> Level {
     return Level(exponent, bitcast<f32>(u32(exponent + 127) << 23u), 2.0 / mantissa - 1.0);
 }
 
-// A coordinate in units of a level: the number of an old mark near the eye, and the place from it.
+// A coordinate in units of a level.
+struct Place {
+    // That of an old mark near the eye.
+    number: i32,
+    // From this mark on.
+    at: f32,
+}
+
 // `from_eye`: the coordinate from the eye on; `eye`: that of the eye.
-fn place_of(from_eye: f32, eye: f32, size: f32) -> vec2<f32> {
+fn place_of(from_eye: f32, eye: f32, size: f32) -> Place {
     let whole = round(clamp(eye / size, -1e9, 1e9));
-    return vec2(whole, from_eye / size + (eye / size - whole));
+    return Place(i32(whole), from_eye / size + (eye / size - whole));
+}
+
+#ifdef WORLD_ORIGIN
+// The same with a coordinate of the eye that is exact far from the origin, as strokes.rs splits it: in units
+// of 2^-12, modulo 2^20, and the rest in units of 2^-36.
+fn place_of_split(from_eye: f32, eye: vec2<i32>, level: Level) -> Place {
+    let down = u32(clamp(level.exponent + 12, 0, 31));
+    let number = (eye.x << u32(clamp(-level.exponent - 12, 0, 31))) >> down;
+    let units = f32(eye.x & ((1 << down) - 1)) + f32(eye.y) / 16777216.0;
+    return Place(number, from_eye / level.size + units / 4096.0 / level.size);
+}
+
+// A coordinate for place_of_split.
+fn split(x: f32) -> vec2<i32> {
+    let units = clamp(4096.0 * x, -2e9, 2e9);
+    return vec2(i32(floor(units)), i32((units - floor(units)) * 16777216.0));
+}
+#endif
+
+// The number of a mark at a level: far from the origin, coordinates count modulo 2^20.
+fn wrapped(number: i32, exponent: i32) -> i32 {
+#ifdef WORLD_ORIGIN
+    let unused = u32(clamp(exponent + 12, 0, 31));
+    return (number << unused) >> unused;
+#else
+    return number;
+#endif
 }
 
 // A random number of the mark with a number at a level, the same at every level that has the mark.
-fn mark_of(number: i32, exponent: i32, seed: u32) -> u32 {
+fn mark_of(any_number: i32, exponent: i32, seed: u32) -> u32 {
+    let number = wrapped(any_number, exponent);
     if number == 0 {
         return hash(seed);
     }
@@ -39,7 +74,8 @@ fn mark_of(number: i32, exponent: i32, seed: u32) -> u32 {
 }
 
 // The same of a node of nested square lattices.
-fn mark_of_node(node: vec2<i32>, exponent: i32, seed: u32) -> u32 {
+fn mark_of_node(any_node: vec2<i32>, exponent: i32, seed: u32) -> u32 {
+    let node = vec2(wrapped(any_node.x, exponent), wrapped(any_node.y, exponent));
     // The node in the middle of all is of every level.
     let is_middle = (node.x | node.y) == 0;
     let twos = select(countTrailingZeros(node.x | node.y), -exponent, is_middle);
@@ -49,18 +85,29 @@ fn mark_of_node(node: vec2<i32>, exponent: i32, seed: u32) -> u32 {
 }
 
 // Smooth noise from -1 to 1 along a line, at two levels that are mixed: it does not jump where the
-// level changes. `at`: number and place, see place_of.
-fn noise_along(at: vec2<f32>, grown: f32, period: f32, seed: u32) -> f32 {
-    let coarse = smooth_at((at.x + at.y) / period, seed);
-    let fine = smooth_at((at.x + at.y) * 2.0 / period, seed);
-    return mix(coarse, fine, grown);
+// level changes. A cell of the coarse one is 2^octave old marks wide.
+fn noise_along(at: Place, level: Level, octave: i32, seed: u32) -> f32 {
+    let coarse = smooth_at(at, level.exponent, octave, seed);
+    let fine = smooth_at(at, level.exponent, octave - 1, seed);
+    return mix(coarse, fine, level.grown);
 }
 
-fn smooth_at(x: f32, seed: u32) -> f32 {
+fn smooth_at(at: Place, exponent: i32, octave: i32, seed: u32) -> f32 {
+    var first = 0;
+    var rest = at.number;
+#ifdef WORLD_ORIGIN
+    // The cells before the number: an f32 would round it.
+    let down = u32(max(octave, 0));
+    first = (at.number << u32(max(-octave, 0))) >> down;
+    rest = at.number & ((1 << down) - 1);
+#endif
+    let x = (f32(rest) + at.at) * bitcast<f32>(u32(127 - octave) << 23u);
     let cell = floor(x);
     let f = x - cell;
-    let i = i32(clamp(cell, -2e9, 2e9));
-    return mix(lattice(vec2(i, 0), seed), lattice(vec2(i + 1, 0), seed), f * f * (3.0 - 2.0 * f));
+    let i = first + i32(clamp(cell, -2e9, 2e9));
+    let low = lattice(vec2(wrapped(i, exponent + octave), 0), seed);
+    let high = lattice(vec2(wrapped(i + 1, exponent + octave), 0), seed);
+    return mix(low, high, f * f * (3.0 - 2.0 * f));
 }
 
 // Where a stroke of a line begins, as a fraction of its length: at every level at the same place.

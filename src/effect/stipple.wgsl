@@ -3,11 +3,11 @@
 // Dots of one size that lie on surfaces, as many as the tone asks for. They are the nodes of nested
 // square lattices in the plane of coordinates that a surface faces. A node keeps its place and its
 // random number at every level, so zooming in adds dots between those that are there. For the
-// effect `Hatching` and the toon material. Pure functions.
+// effect `Hatching` and the toon material.
 
 #import bevy_comics::effect::footprint::singular_values
-#import bevy_comics::effect::nested::{level_of, mark_of_node, place_of}
-#import bevy_comics::effect::strokes::{Strokes, Surface, shared_tone}
+#import bevy_comics::effect::nested::{Level, level_of, mark_of_node}
+#import bevy_comics::effect::strokes::{Strokes, Surface, place_along, shared_tone}
 
 const PI: f32 = 3.14159265;
 // Layers of dots, each with a lattice of its own. What they leave is a plain tone.
@@ -72,7 +72,8 @@ fn node_cover(s: Strokes, l: Lattice, node: vec2<i32>, away: vec2<f32>) -> f32 {
     return disc_coverage(away - stray, l.right, l.down, l.wide, full * sqrt(share));
 }
 
-// Coverage by the dots of a lattice. `u`, `v`: two axes of its plane, at right angles.
+// Coverage by the dots of a lattice. `u`, `v`: two axes of its plane, at right angles; `seed`: also half of
+// the number of `u` in strokes.rs.
 fn lattice_cover(s: Strokes, on: Surface, u: vec3<f32>, v: vec3<f32>, seed: u32, tone: f32) -> f32 {
     if tone <= 0.0 {
         return 0.0;
@@ -86,11 +87,12 @@ fn lattice_cover(s: Strokes, on: Surface, u: vec3<f32>, v: vec3<f32>, seed: u32,
     let distance = dot_radius(s) * sqrt(PI / tone);
     let level = level_of(distance * pixel);
     let fine = 0.5 * level.size;
-    let at_u = place_of(dot(u, on.place), dot(u, on.eye), fine);
-    let at_v = place_of(dot(v, on.place), dot(v, on.eye), fine);
-    let cell = floor(vec2(at_u.y, at_v.y));
-    let at = vec2(at_u.y, at_v.y) - cell;
-    let node = vec2(i32(at_u.x) + i32(cell.x), i32(at_v.x) + i32(cell.y));
+    let finest = Level(level.exponent - 1, fine, 0.0);
+    let at_u = place_along(on, u, 2u * seed, finest);
+    let at_v = place_along(on, v, 2u * seed + 1u, finest);
+    let cell = floor(vec2(at_u.at, at_v.at));
+    let at = vec2(at_u.at, at_v.at) - cell;
+    let node = vec2(at_u.number + i32(cell.x), at_v.number + i32(cell.y));
     var l: Lattice;
     l.right = across / fine;
     l.down = below / fine;
@@ -101,7 +103,7 @@ fn lattice_cover(s: Strokes, on: Surface, u: vec3<f32>, v: vec3<f32>, seed: u32,
     let free = 0.5 * distance * pixel / fine;
     l.room = min(0.866 * free, free - 0.5 * l.wide);
     l.grown = (level.grown + 1.0) * (level.grown + 1.0) - 1.0;
-    l.exponent = level.exponent - 1;
+    l.exponent = finest.exponent;
     l.seed = seed ^ s.seed;
     let cover = node_cover(s, l, node, at)
         + node_cover(s, l, node + vec2(1, 0), at - vec2(1.0, 0.0))

@@ -2,9 +2,14 @@
 
 // Strokes that lie on surfaces, where these meet families of parallel planes. Planes are nested:
 // those of one level are every second one of the next. For the effect `Hatching` and the toon
-// material. Pure functions.
+// material.
 
-#import bevy_comics::effect::nested::{Level, TAPER, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start}
+#import bevy_comics::effect::nested::{
+    Level, Place, TAPER, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start,
+}
+#ifdef WORLD_ORIGIN
+#import bevy_comics::effect::nested::{place_of_split, split}
+#endif
 #import bevy_comics::lines::edge::line_coverage
 
 const GROUND_PAPER: u32 = 1u;
@@ -44,6 +49,31 @@ struct Surface {
     across: vec3<f32>,
     down: vec3<f32>,
     normal: vec3<f32>,
+#ifdef WORLD_ORIGIN
+    // Whether the frame is the world. Then `eyes` are the coordinates of the eye.
+    is_world: bool,
+#endif
+}
+
+#ifdef WORLD_ORIGIN
+// Coordinates of the eye in the true world along the directions of marks, see strokes.rs: two in each.
+var<private> eyes: array<vec4<i32>, 15>;
+
+fn set_eyes(values: array<vec4<i32>, 15>) {
+    eyes = values;
+}
+#endif
+
+// The place of a surface along a direction, which has a number in strokes.rs.
+fn place_along(on: Surface, direction: vec3<f32>, number: u32, level: Level) -> Place {
+#ifdef WORLD_ORIGIN
+    let two = eyes[number / 2u];
+    let of_world = select(two.xy, two.zw, number % 2u == 1u);
+    let eye = select(split(dot(direction, on.eye)), of_world, on.is_world);
+    return place_of_split(dot(direction, on.place), eye, level);
+#else
+    return place_of(dot(direction, on.place), dot(direction, on.eye), level.size);
+#endif
 }
 
 // How far a stroke reaches from its line at most, in pixels. `line`: see stroke.
@@ -54,20 +84,27 @@ fn stroke_reach(s: Strokes, line: vec2<f32>, tone: f32) -> f32 {
 }
 
 // A line near a pixel. `line`: its distance in pixels, and half its width.
-fn stroke(s: Strokes, line: vec2<f32>, along: vec2<f32>, level: Level, mark: u32, tone: f32) -> f32 {
+fn stroke(s: Strokes, line: vec2<f32>, along: Place, level: Level, mark: u32, tone: f32) -> f32 {
     // Dark areas have straight, whole lines: they would cross.
     let free = 1.0 - tone;
     let wobble = 0.5 * s.spacing * s.wobble * free;
-    let moved = line.x - wobble * noise_along(along, level.grown, 0.5, mark ^ s.seed);
+    let moved = line.x - wobble * noise_along(along, level, -1, mark ^ s.seed);
     let start = stroke_start(mark, level.exponent);
-    let breaks = stroke_factor(along.y + start, level.grown, s.breaks * free);
-    let pressure = 1.0 + s.pressure * free * noise_along(along, level.grown, 4.0, ~mark ^ s.seed);
+    let breaks = stroke_factor(along.at + start, level.grown, s.breaks * free);
+    let pressure = 1.0 + s.pressure * free * noise_along(along, level, 2, ~mark ^ s.seed);
     return line_coverage(abs(moved), line.y * breaks * pressure);
 }
 
 // Coverage of a pixel by the lines of a family of planes. `axes`: its normal, and the other two axes
-// of the frame; `number`: of the family.
-fn family_cover(s: Strokes, on: Surface, axes: mat3x3<f32>, number: u32, tone: f32) -> f32 {
+// of the frame; `numbers`: of these directions; `number`: of the family.
+fn family_cover(
+    s: Strokes,
+    on: Surface,
+    axes: mat3x3<f32>,
+    numbers: vec3<u32>,
+    number: u32,
+    tone: f32,
+) -> f32 {
     let a = axes[0];
     let b = axes[1];
     let c = axes[2];
@@ -76,24 +113,25 @@ fn family_cover(s: Strokes, on: Surface, axes: mat3x3<f32>, number: u32, tone: f
     let level = level_of(2.0 * s.spacing * change);
     // Distance of the old lines in pixels.
     let distance = level.size / change;
-    let at = place_of(dot(a, on.place), dot(a, on.eye), level.size);
-    let old = round(at.y);
-    let fresh = round(at.y - 0.5);
-    let first = i32(at.x) + i32(old);
-    let second = 2 * (i32(at.x) + i32(fresh)) + 1;
+    let at = place_along(on, a, numbers.x, level);
+    let old = round(at.at);
+    let fresh = round(at.at - 0.5);
+    let first = at.number + i32(old);
+    let second = 2 * (at.number + i32(fresh)) + 1;
     let half_width = s.spacing * tone;
     // Along the lines of a surface; of the two axes the one that changes clearly more: on the sides
     // of a box, both may change equally.
     let direction = cross(on.normal, a);
-    let axis = select(b, c, abs(dot(c, direction)) > 1.1 * abs(dot(b, direction)));
+    let is_third = abs(dot(c, direction)) > 1.1 * abs(dot(b, direction));
+    let axis = select(b, c, is_third);
     let change_along = vec2(dot(axis, on.across), dot(axis, on.down));
     let speed = abs(gradient.x * change_along.y - gradient.y * change_along.x) / change;
     let strokes = level_of(1.4 * s.length * max(speed, 1e-25));
-    let along = place_of(dot(axis, on.place), dot(axis, on.eye), strokes.size);
+    let along = place_along(on, axis, select(numbers.y, numbers.z, is_third), strokes);
     let old_mark = mark_of(first, level.exponent, number);
     let fresh_mark = mark_of(second, level.exponent - 1, number);
-    let old_line = vec2((at.y - old) * distance, half_width);
-    let fresh_line = vec2((at.y - fresh - 0.5) * distance, level.grown * half_width);
+    let old_line = vec2((at.at - old) * distance, half_width);
+    let fresh_line = vec2((at.at - fresh - 0.5) * distance, level.grown * half_width);
     // The line whose edge is nearer, and the other one where it reaches the pixel.
     let is_old = abs(old_line.x) - old_line.y <= abs(fresh_line.x) - fresh_line.y;
     let nearer = select(fresh_line, old_line, is_old);
@@ -129,6 +167,8 @@ fn layer_cover(s: Strokes, on: Surface, g: vec3<f32>, layer: u32, tone: f32) -> 
     var other = b;
     var other_number = 1u;
     var third = c;
+    let numbers = vec3(layer, (layer + 1u) % 3u, (layer + 2u) % 3u);
+    var other_numbers = numbers.yzx;
     if layer == 1u {
         share = g.x * g.y;
         a = m[1];
@@ -150,14 +190,18 @@ fn layer_cover(s: Strokes, on: Surface, g: vec3<f32>, layer: u32, tone: f32) -> 
         other = (one + two) * 0.70710678;
         third = (one - two) * 0.70710678;
         other_number = 3u;
+        let pair = select(select(0u, 1u, no_y), 2u, no_x);
+        other_numbers = vec3(3u + 2u * pair, 4u + 2u * pair, 2u);
     }
     var light = 1.0;
     if share > 0.0 {
-        light = 1.0 - family_cover(s, on, mat3x3(a, b, c), layer, shared_tone(tone, share));
+        let own = shared_tone(tone, share);
+        light = 1.0 - family_cover(s, on, mat3x3(a, b, c), numbers, layer, own);
     }
     if share < 1.0 {
         let rest = shared_tone(tone, 1.0 - share);
-        light *= 1.0 - family_cover(s, on, mat3x3(other, third, a), other_number, rest);
+        let axes = mat3x3(other, third, a);
+        light *= 1.0 - family_cover(s, on, axes, other_numbers, other_number, rest);
     }
     return 1.0 - light;
 }

@@ -29,6 +29,7 @@ pub(super) fn effect_context(
         clip_from_world,
         relative_from_clip: relative_from_clip(view, extracted),
         eye: extracted.world_from_view.translation(),
+        world_origin: view.origin,
         to_light: view.to_light,
         cuts: view.cuts,
         seconds: view.time,

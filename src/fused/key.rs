@@ -365,6 +365,7 @@ impl StylizeKey {
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
             (self.places(), "OBJECT_DEPTHS"),
+            (needs.contains(Needs::WORLD_ORIGIN), "WORLD_ORIGIN"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),

@@ -70,6 +70,8 @@ pub(crate) struct Plan {
     pub range_of: Option<Entity>,
     /// Another camera takes the visible range of this one.
     pub lends: bool,
+    /// The app has a `WorldOrigin`.
+    pub has_origin: bool,
     /// Effects change only the pixels that the camera has drawn.
     pub own_pixels: Option<OwnPixels>,
     pub beyond: BeyondPrepass,
@@ -312,6 +314,11 @@ impl Plan {
             needs
         } else {
             needs - Needs::OBJECT_ANCHORS
+        };
+        let needs = if self.has_origin {
+            needs
+        } else {
+            needs - Needs::WORLD_ORIGIN
         };
         let needs = if self.has_ids() {
             needs

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{
     ecs::{component::Component, entity::Entity},
-    math::{Mat4, Vec3},
+    math::{DVec3, Mat4, Vec3},
 };
 
 use super::Plan;
@@ -20,6 +20,8 @@ pub(crate) struct ViewPlan {
     pub number: u64,
     pub projection: DepthProjection,
     pub clip_from_view: Mat4,
+    /// True position of the origin of the world that is rendered.
+    pub origin: DVec3,
     /// Physical pixels per logical pixel.
     pub scale_factor: f32,
     /// The largest line width that an object overrides, in logical pixels.

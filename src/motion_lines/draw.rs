@@ -13,11 +13,11 @@ use bevy::{
         lifecycle::Remove,
         observer::On,
         query::{With, Without},
-        system::{Commands, Query, Res, ResMut, SystemParam},
+        system::{Commands, Local, Query, Res, ResMut, SystemParam},
     },
     light::NotShadowCaster,
     log::warn_once,
-    math::Vec3,
+    math::{DVec3, Vec3},
     mesh::{Mesh, Mesh3d},
     pbr::MeshMaterial3d,
     time::Time,
@@ -31,7 +31,7 @@ use super::{
     seeds::seeds_of,
     trail::{Pose, SeedsOf, Trail},
 };
-use crate::{CameraCut, clock};
+use crate::{CameraCut, clock, origin::WorldOrigin};
 
 /// Marks the entity with the ribbons of an object.
 #[derive(Component)]
@@ -64,9 +64,16 @@ pub(super) fn remove_ribbons(
 pub(super) fn follow(
     mut objects: Query<(&MotionLines, &mut Trail, &GlobalTransform, &Mesh3d)>,
     meshes: Res<Assets<Mesh>>,
-    time: Res<Time>,
+    (time, origin): (Res<Time>, Option<Res<WorldOrigin>>),
+    mut last_origin: Local<DVec3>,
 ) {
+    let origin = WorldOrigin::of(origin.as_deref());
+    let shift = (*last_origin - origin).as_vec3();
+    *last_origin = origin;
     for (lines, mut trail, transform, mesh) in &mut objects {
+        if shift != Vec3::ZERO {
+            trail.shift(shift);
+        }
         let lines = lines.sanitized();
         let of = SeedsOf {
             mesh: mesh.0.id(),

@@ -63,6 +63,14 @@ impl Trail {
         self.drawing = None;
     }
 
+    /// The whole world has moved, the object with it.
+    pub fn shift(&mut self, by: Vec3) {
+        for pose in &mut self.poses {
+            pose.world_from_mesh.translation += Vec3A::from(by);
+        }
+        self.drawing = None;
+    }
+
     pub fn poses(&self) -> &VecDeque<Pose> {
         &self.poses
     }

@@ -90,7 +90,7 @@ pub fn differ(a: &[f64], b: &[f64], limit: f64) -> usize {
 }
 
 /// A wall at an angle about a slanted axis, through a point before the camera.
-fn tilted(degrees: f32, distance: f32) -> Transform {
+pub fn tilted(degrees: f32, distance: f32) -> Transform {
     let axis = Vec3::new(0.6, 0.8, 0.0);
     Transform::from_xyz(0.0, 0.0, -distance)
         .with_rotation(Quat::from_axis_angle(axis, degrees.to_radians()))
@@ -169,39 +169,45 @@ pub fn fields_keep_their_mean_tone(
     assert_eq!(small.errors(), 0);
 }
 
-/// Every pixel of a slanted wall is that of its geometry: the plane, not its depth and normals.
-#[test]
-fn strokes_are_where_the_plane_is() {
-    let mut small = empty();
+/// How many pixels are not those of the geometry of a wall of light 0.2. `plane`: a place of it from the
+/// eye on, and its normal; `eye`: where strokes are fixed to.
+pub fn misplaced(found: &[f64], s: &Hatching, plane: [Vec3; 2], eye: DVec3) -> usize {
     let projection = PerspectiveProjection {
         fov: FOV,
         aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
         ..default()
     };
     let view = projection.get_clip_from_view().as_dmat4().inverse();
+    let [place, normal] = plane.map(|v| v.as_dvec3());
+    let (hatch, tone) = (Hatch::new(s), tone(s, 0.2));
+    let is_apart = |(i, got): (usize, &f64)| {
+        let [x, y] = [i as u32 % SIZE.x, i as u32 / SIZE.x].map(|v| f64::from(v) + 0.5);
+        let part = DVec2::new(x, y) / SIZE.as_dvec2();
+        let ndc = part * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
+        let on = Surface::of_plane(view, ndc, SIZE.as_dvec2(), (place, normal));
+        let beside = [DVec3::ZERO, on.across, on.down, -on.across, -on.down];
+        let near = beside.map(|by| {
+            let place = on.place + eye + 0.1 * by;
+            hatch.cover(&Surface { place, ..on }, tone)
+        });
+        let [low, high] = least_and_most(&near);
+        !(low - 0.03..=high + 0.03).contains(got)
+    };
+    found.iter().enumerate().filter(|at| is_apart(*at)).count()
+}
+
+/// Every pixel of a slanted wall is that of its geometry: the plane, not its depth and normals.
+#[test]
+fn strokes_are_where_the_plane_is() {
+    let mut small = empty();
     for (degrees, distance) in [(20.0, 9.0), (55.0, 30.0)] {
         let at = tilted(degrees, distance);
-        let normal = at.rotation * Vec3::Z;
-        let plane = (at.translation.as_dvec3(), normal.as_dvec3());
+        let plane = [at.translation, at.rotation * Vec3::Z];
         small.clear();
         flat(&mut small, 0.2, at);
         for s in [strokes(), inked(HatchingMarks::Strokes)] {
             let found = covers(&mut small, s);
-            let (hatch, tone) = (Hatch::new(&s), tone(&s, 0.2));
-            let is_apart = |(i, got): (usize, &f64)| {
-                let [x, y] = [i as u32 % SIZE.x, i as u32 / SIZE.x].map(|v| f64::from(v) + 0.5);
-                let part = DVec2::new(x, y) / SIZE.as_dvec2();
-                let ndc = part * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
-                let on = Surface::of_plane(view, ndc, SIZE.as_dvec2(), plane);
-                let beside = [DVec3::ZERO, on.across, on.down, -on.across, -on.down];
-                let near = beside.map(|by| {
-                    let place = on.place + 0.1 * by;
-                    hatch.cover(&Surface { place, ..on }, tone)
-                });
-                let [low, high] = least_and_most(&near);
-                !(low - 0.03..=high + 0.03).contains(got)
-            };
-            let apart = found.iter().enumerate().filter(|at| is_apart(*at)).count();
+            let apart = misplaced(&found, &s, plane, DVec3::ZERO);
             println!("{degrees} degrees: {apart} pixels differ");
             assert!(
                 apart < found.len() / 100,

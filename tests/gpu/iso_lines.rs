@@ -1,6 +1,6 @@
 //! Where lines of equal depth, height and distance lie.
 
-use bevy_comics::effects::IsoField;
+use bevy_comics::{cameras::WorldOrigin, effects::IsoField};
 
 use crate::{
     prelude::*,
@@ -114,6 +114,37 @@ fn depths_divide_the_range() {
         let at = 0.5 + 95.0 * f64::from(line) / 10.0;
         assert_line(row(&picture, 20), [at, 2.0], [0.02, 0.02]);
     }
+}
+
+/// So far away that an f32 has only each eighth unit. Heights are rows of pixels, distances columns: the
+/// center is 72 million units to the left, at the depth of the wall.
+#[test]
+fn lines_far_from_the_origin_are_where_they_are() {
+    let mut small = towards_the_sky(SIZE);
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
+    for (field, origin) in [
+        (IsoField::Height, DVec3::new(5e8, 7.2e7 + 3.0, 1e6)),
+        (IsoField::Distance, DVec3::new(7.2e7 + 3.0, 0.0, 100.0)),
+    ] {
+        small.world().insert_resource(WorldOrigin(origin));
+        let lines = IsoLines {
+            major: 3,
+            major_width: 4.0,
+            ..every_8(field)
+        };
+        let picture = draw(&mut small, lines);
+        for line in -2..=3 {
+            let at = 8.0 * f64::from(line) - 3.0;
+            let width = if line % 3 == 0 { 4.0 } else { 2.0 };
+            match field {
+                IsoField::Height => {
+                    assert_line(column(&picture, 40), [32.0 - at, width], [0.02, 0.02]);
+                }
+                _ => assert_line(row(&picture, 20), [48.0 + at, width], [0.02, 0.02]),
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
 }
 
 /// In perspective: the rows in which a ramp has a height, from the geometry of the view.

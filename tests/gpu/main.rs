@@ -19,6 +19,7 @@ mod distance;
 mod extremes;
 mod failures;
 mod finish;
+mod floating_origin;
 mod focus;
 mod focus_styles;
 mod fresh_crate;

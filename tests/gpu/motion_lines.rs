@@ -3,7 +3,10 @@
 use bevy::time::{TimeUpdateStrategy, Virtual};
 use bevy_comics::{MotionLines, SteppedAnimation};
 
-use crate::prelude::*;
+use crate::{
+    floating_origin::{SHIFT, shift},
+    prelude::*,
+};
 
 const SIZE: UVec2 = UVec2::new(160, 96);
 /// Half of the size of the box.
@@ -210,6 +213,33 @@ fn they_begin_anew_at_a_jump_and_at_a_cut() {
         stage.fly(1, |_| place);
         stage.assert_bare(what);
     }
+}
+
+/// A shift of the whole world is no motion: lines are where they would be without it, from their box.
+#[test]
+fn a_shift_of_the_world_is_no_motion() {
+    let drawn = |by: Vec3, tells: bool| {
+        let mut stage = Stage::new(lines());
+        let begin = stage.seconds() as f32;
+        let place = |t| Vec3::new(-5.0 + SPEED * (t - begin), 0.0, 0.0);
+        stage.fly(10, |t| Transform::from_translation(place(t)));
+        shift(stage.small.world(), by, tells);
+        stage.fly(3, |t| Transform::from_translation(place(t) + by));
+        let at = stage.at().translation;
+        let places = stage.places().into_iter().map(|place| place - at);
+        let places: Vec<Vec3> = places.collect();
+        (places, stage.ink().len())
+    };
+    let (still, told) = (drawn(Vec3::ZERO, false), drawn(SHIFT, true));
+    assert!(!still.0.is_empty());
+    let pairs = still.0.iter().zip(&told.0);
+    let most = pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    // An f32 has 6e-5 at 1000; a place has some roundings.
+    assert!(most < 1e-3 && still.0.len() == told.0.len(), "{most}");
+    assert!(still.1.abs_diff(told.1) <= 2, "{}, {}", still.1, told.1);
+    // Three frames after a jump, lines are short.
+    let untold = drawn(SHIFT, false);
+    assert!(untold.1 < still.1 / 2, "{}, {}", untold.1, still.1);
 }
 
 /// Ribbons go with the object or its component, and wait while it is hidden. There is one entity

@@ -5,6 +5,7 @@ use bevy_comics::SteppedAnimation;
 use image::RgbaImage;
 
 use crate::{
+    floating_origin::shift,
     line_scenes::{mean, runs, skinned},
     prelude::*,
     walls::towards_the_sky,
@@ -123,6 +124,26 @@ fn the_game_sees_the_truth() {
     let (held, free) = (run(true), run(false));
     assert_eq!(held.0, free.0);
     assert!(held.1 == free.1, "the pictures after the release differ");
+}
+
+/// A held pose moves with the whole world, which is no motion.
+#[test]
+fn a_held_pose_moves_with_the_origin() {
+    for tells in [true, false] {
+        let mut small = stage();
+        small.insert((DepthPrepass, MotionVectorPrepass));
+        let still = SteppedAnimation { rate: 1.0 };
+        square(&mut small, 0.0, still);
+        small.headless.step(10);
+        let before = small.picture();
+        shift(small.world(), Vec3::new(7.0, 0.0, 0.0), tells);
+        small.headless.step(1);
+        assert_eq!(small.picture() == before, tells);
+        let motion = small.motion_vectors().expect("a prepass");
+        let middle = motion.pixels.len() / 2 + SIZE.x as usize / 2;
+        let [right, ..] = motion.pixels[middle];
+        assert_eq!(right.abs() < 1e-3, tells, "{right}");
+    }
 }
 
 /// Motion vectors are those of the picture: none while the pose is held, the whole jump in

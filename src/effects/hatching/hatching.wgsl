@@ -14,6 +14,9 @@
 #import bevy_comics::depth::raw::raw_depth
 #import bevy_comics::depth::view::{depth_pixel, depth_texel, view}
 #endif
+#ifdef WORLD_ORIGIN
+#import bevy_comics::effect::strokes::set_eyes
+#endif
 #ifdef OBJECT_ANCHORS
 #import bevy_comics::effect::similarity::rotated
 #import bevy_comics::objects::{load_object, style_of}
@@ -32,6 +35,8 @@ struct Hatching {
     at_far: f32,
     // How far strokes turn into a plain tone where they would not continue.
     simplify_small: f32,
+    // See strokes.wgsl.
+    eyes: array<vec4<i32>, 15>,
 }
 
 // The surface at a place relative to the eye, in world axes. `h`: that place in homogeneous
@@ -61,6 +66,9 @@ fn in_frame(on: Surface, centre: vec3<f32>, rotation: vec4<f32>) -> Surface {
     moved.across = rotated(back, on.across);
     moved.down = rotated(back, on.down);
     moved.normal = rotated(back, on.normal);
+#ifdef WORLD_ORIGIN
+    moved.is_world = false;
+#endif
     return moved;
 }
 #endif
@@ -125,6 +133,9 @@ fn seen_surface(s: Hatching, p: Pixel) -> Surface {
     let away = p.inside + 0.5 - texel;
     on.place += on.across * away.x + on.down * away.y;
     on.eye = s.eye;
+#ifdef WORLD_ORIGIN
+    on.is_world = true;
+#endif
     return on;
 }
 
@@ -156,6 +167,9 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     s.strokes.spacing *= p.spacing;
     let color = p.color / max(p.alpha, 1e-3);
     var light = lightness(color);
+#ifdef WORLD_ORIGIN
+    set_eyes(s.eyes);
+#endif
 #ifdef EFFECT_HATCHING_ON_THINGS
     let on = seen_surface(s, p);
 #ifdef EFFECT_HATCHING_FACES

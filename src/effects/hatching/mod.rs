@@ -7,7 +7,7 @@ use std::f32::consts::FRAC_PI_4;
 use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{Mat3, Mat4, Vec3},
+    math::{IVec4, Mat3, Mat4, Vec3},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -16,7 +16,10 @@ use serde::{Deserialize, Serialize};
 pub use kinds::{HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource};
 
 use crate::{
-    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Strokes, Variants},
+    effect::{
+        Effect, EffectContext, EffectShader, EffectStage, Needs, Strokes, Variants, dot_eyes,
+        stroke_eyes,
+    },
     settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
@@ -172,7 +175,7 @@ impl Effect for Hatching {
         let mut needs = Needs::empty();
         needs.set(Needs::MAP, self.at_near != self.at_far);
         if self.anchor == HatchingAnchor::Object {
-            needs |= Needs::DEPTH | Needs::NORMALS | Needs::OBJECT_ANCHORS;
+            needs |= Needs::DEPTH | Needs::NORMALS | Needs::OBJECT_ANCHORS | Needs::WORLD_ORIGIN;
         }
         needs
     }
@@ -209,6 +212,11 @@ impl Effect for Hatching {
     }
 
     fn uniform(&self, view: &EffectContext) -> HatchingUniform {
+        let eyes = match self.marks {
+            HatchingMarks::Strokes => stroke_eyes,
+            HatchingMarks::Dots => dot_eyes,
+        };
+        let axes = self.axes().map(|axis| axis.as_dvec3().normalize());
         HatchingUniform {
             relative_from_clip: view.relative_from_clip,
             strokes: self.strokes(view.scale_factor, view.animation_seed(self.rate)),
@@ -217,6 +225,7 @@ impl Effect for Hatching {
             to_light: view.to_light,
             at_far: self.at_far,
             simplify_small: self.simplify_small,
+            eyes: eyes(axes, view.world_origin + view.eye.as_dvec3()),
         }
     }
 }
@@ -280,4 +289,5 @@ pub struct HatchingUniform {
     to_light: Vec3,
     at_far: f32,
     simplify_small: f32,
+    eyes: [IVec4; 15],
 }

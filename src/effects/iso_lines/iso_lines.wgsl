@@ -32,6 +32,11 @@ struct IsoLines {
     major_half_width: f32,
     major: i32,
     field: u32,
+    eye: vec3<f32>,
+    // Added to the height; with a WorldOrigin, that to the distance is the distance of the eye.
+    offset: f32,
+    // The eye from the center in the true world.
+    arm: vec3<f32>,
 }
 
 // A constant where the pass defines it: see has() in map.wgsl.
@@ -56,7 +61,15 @@ fn iso_value(s: IsoLines, p: vec3<f32>, map: f32) -> f32 {
     if field == DEPTH {
         return map;
     }
-    return select(distance(p, s.center), p.y, field == HEIGHT);
+#ifdef WORLD_ORIGIN
+    // The distance less that of the eye: exact also far from the center.
+    let by = p - s.eye;
+    let more = dot(by, by + 2.0 * s.arm) / (length(s.arm + by) + length(s.arm));
+    let from_center = s.offset + more;
+#else
+    let from_center = distance(p, s.center);
+#endif
+    return select(from_center, p.y + s.offset, field == HEIGHT);
 }
 
 // How exact the value is: a world position is known to about 1e-6 of its coordinates.

@@ -32,8 +32,9 @@ pub struct IsoLines {
     /// range. Range 0.001 to 1000, default 0.5.
     #[reflect(@FieldRange::logarithmic(1e-3, 1e3))]
     pub step: f32,
-    /// The point that [`IsoField::Distance`] is measured from, in world units. Components
-    /// are clamped to -1e6 to 1e6. Default: the origin.
+    /// The point that [`IsoField::Distance`] is measured from, in world units, from the true origin
+    /// ([`WorldOrigin`](crate::cameras::WorldOrigin)). Components are clamped to -1e6 to 1e6.
+    /// Default: the origin.
     pub center: Vec3,
     /// Width of a line in logical pixels. Range 0.5 to 16, default 1.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
@@ -61,7 +62,7 @@ pub struct IsoLines {
 pub enum IsoField {
     /// The depth map.
     Depth,
-    /// The height above the world's origin: y.
+    /// The height above the world's true origin: y.
     #[default]
     Height,
     /// The distance from [`IsoLines::center`].
@@ -113,7 +114,8 @@ impl Effect for IsoLines {
     fn needs(&self) -> Needs {
         match self.field {
             IsoField::Depth => Needs::MAP | Needs::DEPTH,
-            _ => Needs::DEPTH,
+            IsoField::Height => Needs::DEPTH,
+            IsoField::Distance => Needs::DEPTH | Needs::WORLD_ORIGIN,
         }
     }
 
@@ -123,6 +125,14 @@ impl Effect for IsoLines {
 
     fn uniform(&self, view: &EffectContext) -> IsoLinesUniform {
         let half = |width: f32| 0.5 * width * view.scale_factor;
+        let arm = view.world_origin + view.eye.as_dvec3() - self.center.as_dvec3();
+        let offset = match self.field {
+            IsoField::Depth => 0.0,
+            IsoField::Height => view.world_origin.y,
+            IsoField::Distance => arm.length(),
+        };
+        // After so much, the lines are the same.
+        let cycle = f64::from(self.step) * f64::from(self.major.max(1));
         IsoLinesUniform {
             world_from_clip: view.world_from_clip,
             color: linear_rgb(self.color),
@@ -133,6 +143,9 @@ impl Effect for IsoLines {
             major_half_width: half(self.major_width),
             major: self.major as i32,
             field: self.field_number(),
+            eye: view.eye,
+            offset: offset.rem_euclid(cycle) as f32,
+            arm: arm.as_vec3(),
         }
     }
 }
@@ -160,4 +173,7 @@ pub struct IsoLinesUniform {
     major_half_width: f32,
     major: i32,
     field: u32,
+    eye: Vec3,
+    offset: f32,
+    arm: Vec3,
 }

@@ -22,6 +22,7 @@ mod hidden;
 mod jumps;
 mod listed;
 mod middles;
+mod nested;
 mod normal;
 mod overshoot;
 mod paint;

@@ -36,7 +36,7 @@ pub fn flag(name: String) -> Definition<'static> {
 }
 
 /// The definitions of needs.
-const NEEDS: [(Needs, &[&str]); 15] = [
+const NEEDS: [(Needs, &[&str]); 16] = [
     (Needs::MAP, &["MAP", "DEPTH"]),
     (Needs::DEPTH, &["DEPTH"]),
     (Needs::NORMALS, &["NORMALS"]),
@@ -55,6 +55,7 @@ const NEEDS: [(Needs, &[&str]); 15] = [
         &["OBJECT_ANCHORS", "OBJECT_IDS", "OBJECT_STYLES"],
     ),
     (Needs::OBJECT_DEPTHS, &["OBJECT_DEPTHS", "OBJECT_IDS"]),
+    (Needs::WORLD_ORIGIN, &["WORLD_ORIGIN"]),
 ];
 
 /// What the lines of a camera add to an effect that draws them.
@@ -74,13 +75,18 @@ fn line_forms() -> Vec<Definitions> {
     product(&[[plain, in_layers].concat(), optional(&["OBJECT_STYLES"])])
 }
 
-const MISSING: [Needs; 2] = [Needs::empty(), Needs::OBJECT_ANCHORS];
+const MISSING: [Needs; 4] = [
+    Needs::empty(),
+    Needs::OBJECT_ANCHORS,
+    Needs::WORLD_ORIGIN,
+    Needs::OBJECT_ANCHORS.union(Needs::WORLD_ORIGIN),
+];
 
 fn modes(effect: &'static EffectType) -> Modes {
     let views = views();
     let (mut seen, mut modes) = (BTreeSet::new(), Vec::new());
     for settings in settings(effect) {
-        // Whether or not some object has an anchor.
+        // Whether or not some object has an anchor, and the app a `WorldOrigin`.
         for (view, missing) in views
             .iter()
             .flat_map(|view| MISSING.map(|needs| (view, needs)))

@@ -13,7 +13,7 @@ use super::{
     Rgb,
     edge::line_coverage,
     mix,
-    nested::{level_of, mark_of, noise_along, stroke_factor, stroke_start},
+    nested::{coordinate, level_of, mark_of, noise_along, stroke_factor, stroke_start},
     smoothstep,
     stipple::Dots,
 };
@@ -106,7 +106,7 @@ impl<'a> Hatch<'a> {
         let change = gradient.length();
         let (exponent, grown) = level_of(2.0 * spacing * change);
         let size = f64::from(exponent).exp2();
-        let place = a.dot(on.place) / size;
+        let place = coordinate(a.dot(on.place)) / size;
         let line = on.normal.cross(a);
         let axis = if c.dot(line).abs() > 1.1 * b.dot(line).abs() {
             c
@@ -116,7 +116,7 @@ impl<'a> Hatch<'a> {
         let speed = gradient.perp_dot(on_screen(axis)).abs() / change;
         let length = 1.4 * f64::from(s.length) * self.scale * speed.max(1e-25);
         let (along_exponent, along_grown) = level_of(length);
-        let along = axis.dot(on.place) / f64::from(along_exponent).exp2();
+        let along = coordinate(axis.dot(on.place)) / f64::from(along_exponent).exp2();
         let free = 1.0 - tone;
         let stroke = |away: f64, half_width: f64, mark: u32| {
             let noise = |period, seed: u32| noise_along(along, along_grown, period, seed);

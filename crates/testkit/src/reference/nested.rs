@@ -6,6 +6,12 @@ use super::{
     smoothstep,
 };
 
+/// A coordinate as marks are numbered by it: far from the origin it counts modulo 2^20.
+pub fn coordinate(x: f64) -> f64 {
+    let turn = f64::from(1 << 20);
+    x - turn * (x / turn).round()
+}
+
 /// The exponent of a level, and how far its new marks have grown.
 pub fn level_of(least: f64) -> (i32, f64) {
     let exponent = least.log2().floor() as i32 + 1;

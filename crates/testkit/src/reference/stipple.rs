@@ -9,7 +9,7 @@ use super::{
     footprint::singular_values,
     hatching::Surface,
     mix,
-    nested::{level_of, mark_of_node},
+    nested::{coordinate, level_of, mark_of_node},
     smoothstep,
 };
 
@@ -54,7 +54,7 @@ impl Dots<'_> {
         // How many dots there are for each old one: from 1 to 4.
         let count = (1.0 + grown).powi(2);
         let fine = 0.5 * f64::from(exponent).exp2();
-        let place = on_plane(on.place);
+        let place = DVec2::from(on_plane(on.place).to_array().map(coordinate));
         let spread = (0.6 * f64::from(s.pressure)).min(0.589 / tone - 1.0);
         let first = (place / fine).floor();
         let cover: f64 = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE]

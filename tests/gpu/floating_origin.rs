@@ -1,0 +1,118 @@
+//! Worlds whose origin moves, and places far from it.
+
+use bevy_comics::{cameras::WorldOrigin, effects::IsoField};
+
+use crate::{
+    hatching::{covers, empty, flat, misplaced, plain, tilted},
+    prelude::*,
+};
+
+/// A shift of a world.
+pub const SHIFT: Vec3 = Vec3::new(1000.3, 0.0, -517.7);
+
+/// Adds a vector to the transforms of all roots, and tells the crate or not.
+pub fn shift(world: &mut World, by: Vec3, tells: bool) {
+    let mut roots = world.query_filtered::<&mut Transform, Without<ChildOf>>();
+    for mut root in roots.iter_mut(world) {
+        root.translation += by;
+    }
+    if tells {
+        world.get_resource_or_init::<WorldOrigin>().0 -= by.as_dvec3();
+    }
+}
+
+/// The fraction of the pixels that differ by more than 4 codes.
+fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
+    let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| {
+        let codes = a.0.iter().zip(b.0);
+        codes.map(|(a, b)| a.abs_diff(b)).max() > Some(4)
+    };
+    let pixels = a.pixels().zip(b.pixels());
+    pixels.filter(|(a, b)| apart(a, b)).count() as f64 / f64::from(a.width() * a.height())
+}
+
+/// Asserts that a style stays on surfaces while the origin moves, and does not if the crate is not told.
+fn assert_stays(small: &mut Small, style: ComicStyle) {
+    small.style(&style);
+    let by = SHIFT.with_y(0.07);
+    let [before, untold, told] = [None, Some(false), Some(true)].map(|tells| {
+        if let Some(tells) = tells {
+            shift(small.world(), by, tells);
+        }
+        small.settle();
+        let picture = small.picture();
+        if tells.is_some() {
+            shift(small.world(), -by, false);
+        }
+        picture
+    });
+    let [untold, told] = [untold, told].map(|picture| changed(&before, &picture));
+    println!("{untold:.4} untold, {told:.5}");
+    assert!(untold > 0.05, "{untold}: {style:?}");
+    assert!(told <= 1e-3, "{told}: {style:?}");
+    small.world().remove_resource::<WorldOrigin>();
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn strokes_and_dots_stay_on_surfaces_when_the_origin_moves() {
+    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+    for marks in [HatchingMarks::Strokes, HatchingMarks::Dots] {
+        let hatching = Hatching {
+            marks,
+            wobble: 1.0,
+            ..default()
+        };
+        assert_stays(&mut small, ComicStyle::new().with(hatching));
+    }
+}
+
+#[test]
+fn iso_lines_stay_on_surfaces_when_the_origin_moves() {
+    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+    for field in [IsoField::Height, IsoField::Distance] {
+        let lines = IsoLines {
+            field,
+            step: 0.15,
+            ..default()
+        };
+        assert_stays(&mut small, ComicStyle::new().with(lines));
+    }
+}
+
+/// Truth: 10,000 kilometres away, marks are where the geometry is, and stay there while the camera moves by a
+/// hundredth of a unit. Walls that face an axis of strokes have those of the diagonals.
+#[test]
+fn marks_far_away_are_where_the_plane_is() {
+    let mut small = empty();
+    let origin = DVec3::new(1e7 + 0.123, 3e6, -2e7);
+    small.world().insert_resource(WorldOrigin(origin));
+    let [strokes, dots] = [HatchingMarks::Strokes, HatchingMarks::Dots].map(|marks| Hatching {
+        layers: 3,
+        layer_darkness: 0.15,
+        breaks: 0.6,
+        wobble: 0.3,
+        pressure: 0.3,
+        ..plain(marks)
+    });
+    let facing =
+        |axis: Vec3| tilted(0.0, 9.0).with_rotation(Quat::from_rotation_arc(Vec3::Z, axis));
+    let [_, y, z] = strokes.axes().map(facing);
+    for (s, wall, x) in [
+        (dots, tilted(20.0, 9.0), 0.01),
+        (strokes, y, 0.0),
+        (strokes, y, 0.01),
+        (strokes, z, 0.01),
+    ] {
+        small.clear();
+        flat(&mut small, 0.2, wall);
+        let eye = Vec3::new(x, 0.0, 0.0);
+        small.insert(Transform::from_translation(eye));
+        let found = covers(&mut small, s);
+        let plane = [wall.translation - eye, wall.rotation * Vec3::Z];
+        let apart = misplaced(&found, &s, plane, origin + eye.as_dvec3());
+        println!("{:?}, {x}: {apart} pixels differ", s.marks);
+        assert!(apart < found.len() / 50, "{s:?}, {x}: {apart}");
+    }
+    assert_eq!(small.errors(), 0);
+}
