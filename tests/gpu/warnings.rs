@@ -3,8 +3,8 @@
 use std::process::Command;
 
 use bevy::{
-    camera::ClearColorConfig,
-    core_pipeline::prepass::DeferredPrepass,
+    camera::{ClearColorConfig, visibility::RenderLayers},
+    core_pipeline::prepass::{DeferredPrepass, DepthPrepass},
     light::VolumetricFog,
     material::OpaqueRendererMethod,
     post_process::effect_stack::{ChromaticAberration, LensDistortion},
@@ -59,17 +59,15 @@ fn draw_all() {
     let mut small = Small::alone(options, Msaa::Off);
     let target = small.headless.render_target();
     let first = small.camera;
-    small.insert((
-        Outlines::default(),
-        LensDistortion::default(),
-        DeferredPrepass,
-    ));
+    small.insert((Outlines::default(), LensDistortion::default()));
     let deferred = StandardMaterial {
         opaque_render_method: OpaqueRendererMethod::Deferred,
         ..default()
     };
     let sky = small.put(Sphere::new(50.0), deferred, Transform::IDENTITY);
-    small.world().entity_mut(sky).insert(Backdrop::default());
+    let layer = RenderLayers::layer(5);
+    let backdrop = (Backdrop::default(), layer.clone());
+    small.world().entity_mut(sky).insert(backdrop);
     let world = small.world();
     world.spawn((Camera2d, Outlines::default()));
     let nowhere = RenderTarget::None { size: size() };
@@ -78,6 +76,9 @@ fn draw_all() {
         .spawn((Camera3d::default(), target.clone(), Msaa::Off))
         .id();
     world.spawn(nowhere);
+    // The engine panics where a camera with another prepass sees a deferred material.
+    let deferred = (Camera3d::default(), target.clone(), Msaa::Off, layer);
+    let deferred = world.spawn((deferred, DepthPrepass, DeferredPrepass)).id();
     let shared = Camera {
         order: 2,
         clear_color: ClearColorConfig::None,
@@ -93,7 +94,7 @@ fn draw_all() {
     world.spawn((Camera3d::default(), target, Msaa::Off, shared, mask));
     world.entity_mut(first).insert(VolumetricFog::default());
     small.headless.step(3);
-    small.camera_mut().remove::<DeferredPrepass>();
+    small.world().despawn(deferred);
     small.insert((Outlines::PIXELS, Msaa::Sample4));
     small.headless.step(3);
 }
