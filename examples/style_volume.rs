@@ -90,7 +90,7 @@ fn steps(headless: &mut Headless) -> RgbaImage {
         size.y,
         image::Rgba([255, 255, 255, 255]),
     );
-    for (column, at) in [0.0, 0.32, 0.52, 0.8].into_iter().enumerate() {
+    for (column, at) in [0.0, 0.32, 0.62, 0.8].into_iter().enumerate() {
         headless.app.insert_resource(Walk(at));
         headless.step(4);
         let x = column as i64 * i64::from(size.x + gap);
