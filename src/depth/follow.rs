@@ -19,8 +19,8 @@ use bevy::{
 };
 
 use super::{
-    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, prepare::RANGE_SIZE,
-    request::RangeRequest,
+    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
+    view::RANGE_SIZE,
 };
 use crate::gpu::{buffer, compute_pass, entry};
 

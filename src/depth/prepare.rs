@@ -31,11 +31,9 @@ use super::{
     range_of::{ConversionUniform, TakenRange},
     readback::{RangeReadback, RangeReadings},
     request::RangeRequest,
+    view::RANGE_SIZE,
 };
 use crate::gpu::buffer;
-
-/// Bytes of `VisibleRange` in `view.wgsl`.
-pub(crate) const RANGE_SIZE: u64 = 32;
 
 /// On a view in the render world: its visible range. It stays on the view, with the
 /// state of its smoothing, as long as a range is requested.

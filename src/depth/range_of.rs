@@ -15,7 +15,7 @@ use bevy::{
     shader::Shader,
 };
 
-use super::{frame::DepthProjection, prepare::RANGE_SIZE};
+use super::{frame::DepthProjection, view::RANGE_SIZE};
 use crate::gpu::{buffer, compute_pass, entry};
 
 /// `Conversion` of `range_of.wgsl`: raw depth of a view from that of another one at the same

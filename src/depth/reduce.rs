@@ -8,8 +8,8 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindingResource, CachedComputePipelineId, CachedRenderPipelineId, IntoBinding,
-            PipelineCache, TextureView,
+            BindingResource, CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline,
+            IntoBinding, PipelineCache, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -17,6 +17,7 @@ use bevy::{
 
 use super::{
     ReductionMethod,
+    follow::ViewSmoothing,
     middle::{MiddleInputs, record_middle},
     passes::Reduction,
     ping_pong::{ChainSource, record_chain},
@@ -102,8 +103,8 @@ impl Frame<'_> {
             )),
             _ => None,
         };
-        let borders = self.range.passes.borders.zip(self.range.borders.as_ref());
-        if borders.is_some_and(|(id, _)| self.cache.get_compute_pipeline(id).is_none()) {
+        let borders = self.range.passes.borders;
+        if borders.is_some_and(|id| self.cache.get_compute_pipeline(id).is_none()) {
             return Err(not_ready);
         }
         let middle = match self.range.passes.middle {
@@ -122,38 +123,17 @@ impl Frame<'_> {
             }
             None => None,
         };
-        if let Some((smoothing, pipeline, uniforms)) = smoothing {
-            let device = ctx.render_device().clone();
-            let diagnostics = ctx.diagnostic_recorder();
-            let diagnostics = diagnostics.as_deref();
-            let encoder = ctx.command_encoder();
+        if let Some((smoothing, pipeline, smoothings)) = smoothing {
+            let inputs = MiddleInputs {
+                depth,
+                samples: self.range.request.samples,
+                views,
+                view_offset: self.range.view_offset,
+                smoothings,
+            };
             // Without a reduction there is nothing but the middle.
-            if method.is_some() {
-                let span = diagnostics.time_span(encoder, "comics_range_smoothing");
-                let keys = &self.range.keys;
-                let inputs = (uniforms.clone(), keys);
-                smoothing.record(&device, encoder, self.cache, pipeline, inputs);
-                span.end(encoder);
-            }
-            if let Some((id, borders)) = borders {
-                let span = diagnostics.time_span(encoder, "comics_depth_borders");
-                let target = (&device, &mut *encoder);
-                borders.record(target, (self.cache, id), (uniforms.clone(), smoothing));
-                span.end(encoder);
-            }
-            if let Some(pipeline) = middle {
-                let inputs = MiddleInputs {
-                    depth,
-                    samples: self.range.request.samples,
-                    views,
-                    view_offset: self.range.view_offset,
-                    smoothings: uniforms,
-                };
-                let span = diagnostics.time_span(encoder, "comics_middle_depth");
-                let target = (&device, &mut *encoder);
-                record_middle(target, (self.cache, pipeline), inputs, smoothing);
-                span.end(encoder);
-            }
+            let pipeline = method.is_some().then_some(pipeline);
+            self.follow(smoothing, (pipeline, middle), inputs, ctx);
         }
         if let Some((taken, pipeline, uniforms)) = conversion {
             let device = ctx.render_device().clone();
@@ -165,6 +145,39 @@ impl Frame<'_> {
         }
         self.range.found.store(true, Ordering::Relaxed);
         Ok(method)
+    }
+
+    /// Records what follows the depths from frame to frame: the smoothing, the borders, the middle.
+    fn follow(
+        &self,
+        smoothing: &ViewSmoothing,
+        (pipeline, middle): (Option<&ComputePipeline>, Option<&ComputePipeline>),
+        inputs: MiddleInputs,
+        ctx: &mut RenderContext,
+    ) {
+        let device = ctx.render_device().clone();
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        let uniforms = inputs.smoothings.clone();
+        if let Some(pipeline) = pipeline {
+            let span = diagnostics.time_span(encoder, "comics_range_smoothing");
+            let read = (uniforms.clone(), &self.range.keys);
+            smoothing.record(&device, encoder, self.cache, pipeline, read);
+            span.end(encoder);
+        }
+        if let Some((id, borders)) = self.range.passes.borders.zip(self.range.borders.as_ref()) {
+            let span = diagnostics.time_span(encoder, "comics_depth_borders");
+            let target = (&device, &mut *encoder);
+            borders.record(target, (self.cache, id), (uniforms, smoothing));
+            span.end(encoder);
+        }
+        if let Some(pipeline) = middle {
+            let span = diagnostics.time_span(encoder, "comics_middle_depth");
+            let target = (&device, &mut *encoder);
+            record_middle(target, (self.cache, pipeline), inputs, smoothing);
+            span.end(encoder);
+        }
     }
 
     fn dispatch(

@@ -7,6 +7,9 @@ use bevy::{
 
 use super::{DepthFrame, RawDepth};
 
+/// Bytes of `VisibleRange` in `view.wgsl`.
+pub(crate) const RANGE_SIZE: u64 = 32;
+
 /// `View` of `view.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ViewUniform {

@@ -204,7 +204,7 @@ impl ComicStyle {
     }
 }
 
-/// Makes the camera look like a complete style. `style` says what of it the camera loses with it.
+/// Writes `written`, a complete style, to the camera, as the result of `style` over its `own` style.
 pub(super) fn lay_over(
     camera: &mut EntityWorldMut,
     own: ComicStyle,

@@ -13,7 +13,7 @@ use bevy::render::render_resource::{
 
 use super::line_key::LineKey;
 use crate::{
-    depth::prepare::RANGE_SIZE,
+    depth::view::RANGE_SIZE,
     lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
