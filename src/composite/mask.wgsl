@@ -8,6 +8,9 @@
 #endif
 #ifdef MASKED_BY_DEPTH
 #import bevy_comics::depth::map::is_background
+// One import for each item: two are ambiguous.
+#import bevy_comics::depth::view::texel_depth
+#else ifdef BEYOND_PREPASS
 #import bevy_comics::depth::view::texel_depth
 #endif
 #ifdef MASKED_BY_IDS
@@ -15,7 +18,7 @@
 #endif
 #ifdef BEYOND_PREPASS
 #import bevy_comics::depth::raw::raw_depth
-#import bevy_comics::depth::view::{texel_depth, view}
+#import bevy_comics::depth::view::view
 
 // The depth that the main pass has drawn.
 #ifdef MULTISAMPLED

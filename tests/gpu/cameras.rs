@@ -329,6 +329,9 @@ fn what_is_not_in_the_prepass_keeps_its_colours() {
         // Elsewhere there are lines.
         let drawn = with_bare_cube(&mut small, BeyondPrepass::NoLines, &lines);
         assert!(different(&drawn, &plain).len() > 500);
+        // Both masks in one shader.
+        small.insert(StyleMask::Own).settle();
+        assert!(small.ran(ComicsStage::Stylize));
         assert_eq!(small.errors(), 0);
     }
 }
