@@ -9,7 +9,11 @@ use super::{
     smoothstep,
     view::View,
 };
-use bevy_comics::{Outlines, effects::Equations, lines::LineResponse};
+use bevy_comics::{
+    Outlines,
+    effects::Equations,
+    lines::{LineEdge, LineResponse},
+};
 
 /// The border between a pixel and its neighbour to the east or south.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,6 +138,23 @@ fn sections(view: &View, pixel: [i64; 2], v: [i64; 2], fold: Option<f64>) -> (bo
     (border, here == 255 || there == 255)
 }
 
+/// Whether a hard line between two surfaces of which none hides the other belongs to the pixel,
+/// not to its neighbour.
+fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
+    let objects = along(view, pixel, v, |x, y| match view.ids {
+        Some(ids) => ids.pixels[(y * view.width + x) as usize][0],
+        None => 0,
+    });
+    if objects[2] != objects[3] {
+        return objects[2] > objects[3];
+    }
+    let facing = along(view, pixel, v, |x, y| match normal(view, x, y) {
+        Some([x, y, z]) => 0.31 * x + 0.90 * y + 0.29 * z,
+        None => 0.0,
+    });
+    facing[2] >= facing[3]
+}
+
 /// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
 /// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
 /// objects are not part of the reference.
@@ -216,6 +237,10 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
     let amount = if is_soft { crack.ink } else { 1.0 };
     let [ink, half_width] = respond(s.response, amount, half_width, crack.kinds[2]);
     crack.ink = ink;
+    let hides = crack.kinds[0] && !crack.kinds[2] || crack.kinds[2] && (here - there).abs() > jump;
+    if s.edge == LineEdge::Hard && !hides {
+        crack.mine = is_preferred(view, pixel, v);
+    }
     crack.half_width = stored_width(half_width);
     crack.shifts = crack.kinds[0] || !s.smooth;
     (crack.kinds != [false; 3]).then_some(crack)

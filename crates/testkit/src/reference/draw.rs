@@ -21,7 +21,10 @@ use super::{
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
 };
-use bevy_comics::{Outlines, lines::LineBoil};
+use bevy_comics::{
+    Outlines,
+    lines::{LineBoil, LineEdge},
+};
 
 /// The cracks of a viewport.
 pub struct Cracks {
@@ -35,6 +38,8 @@ pub struct Cracks {
     pub(super) opacity: [f64; 3],
     /// Whether lines leave their cracks.
     smooth: bool,
+    /// Whether lines ink whole pixels.
+    hard: bool,
     /// Whether only the best cracks of each column are searched.
     by_columns: bool,
     /// Beyond loose ends, and over how many cracks they taper.
@@ -64,7 +69,8 @@ impl Cracks {
             width: w,
             height: h,
             cracks,
-            smooth: s.smooth,
+            smooth: s.smooth && s.edge == LineEdge::Smooth,
+            hard: s.edge == LineEdge::Hard,
             opacity: [
                 s.silhouettes.unwrap_or_default().opacity,
                 s.creases.unwrap_or_default().opacity,
@@ -201,6 +207,7 @@ impl Cracks {
             reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
             opacity: [1.0; 3],
             smooth: false,
+            hard: false,
             by_columns: widest > 1.0,
             strokes: vec![],
             taper: 0.0,
@@ -225,6 +232,9 @@ impl Cracks {
 
     /// The same at a place on the sheet.
     fn ink_at(&self, at: [f64; 2], on: &Spot, nudge: f64) -> [f64; 3] {
+        if self.hard {
+            return self.ink_of_sides(at, nudge);
+        }
         let lines = if self.by_columns {
             self.lines_by_columns(at, nudge)
         } else {
@@ -236,6 +246,31 @@ impl Cracks {
     /// The same by an exhaustive search.
     pub fn exhaustive_ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
         ink_of_lines(self.lines_around(at), (at, &Spot::SMOOTH), nudge)
+    }
+
+    /// The ink of hard lines: along the sides of the pixel itself, and of those that lie nearer to
+    /// a line than it is wide.
+    fn ink_of_sides(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
+        let [px, py] = at.map(|at| at.floor() as i64);
+        let mut ink = [0.0; 3];
+        for away in 0..2 * self.reach {
+            // East, south, west, north: the pixel whose crack it is, and whether that is inside.
+            for (side, [x, y], mine) in [
+                (0, [px + away, py], true),
+                (1, [px, py + away], true),
+                (0, [px - away - 1, py], false),
+                (1, [px, py - away - 1], false),
+            ] {
+                let Some(crack) = self.at(x, y)[side] else {
+                    continue;
+                };
+                let width = (2.0 * crack.half_width).round_ties_even().max(1.0);
+                if crack.mine == mine && (away as f64) < width {
+                    ink = larger(ink, ink_of(&crack, nudge, 1.0));
+                }
+            }
+        }
+        ink
     }
 
     /// All lines within reach of a place.
