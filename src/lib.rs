@@ -62,6 +62,7 @@
 #![warn(missing_docs)]
 
 mod animation;
+mod bind_groups;
 mod camera;
 mod clock;
 mod composite;

@@ -88,6 +88,7 @@ fn build_engine_parts(app: &mut App) {
 fn build_render(app: &mut App) {
     #[cfg(any(feature = "objects", feature = "toon"))]
     AnimationPlugin::build_render(app);
+    crate::bind_groups::build_render(app);
     CameraPlugin::build_render(app);
     DepthPlugin::build_render(app);
     ObjectsPlugin::build_render(app);

@@ -7,7 +7,7 @@ use bevy::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
             BufferUsages, CachedComputePipelineId, CommandEncoder, ComputePipelineDescriptor,
-            PipelineCache, ShaderStages,
+            ShaderStages,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -16,7 +16,10 @@ use bevy::{
 };
 
 use super::follow::{SmoothingUniform, ViewSmoothing};
-use crate::gpu::{buffer, compute_pass, entry};
+use crate::{
+    bind_groups::Binder,
+    gpu::{buffer, compute_pass, entry},
+};
 
 /// Bytes of `BorderState` in `borders.wgsl`.
 const STATE_SIZE: u64 = 16;
@@ -42,18 +45,19 @@ impl ViewBorders {
     /// the borders beside the drawn range, and must be recorded after the smoothing.
     pub fn record(
         &self,
-        (device, encoder): (&RenderDevice, &mut CommandEncoder),
-        (cache, pipeline): (&PipelineCache, CachedComputePipelineId),
+        encoder: &mut CommandEncoder,
+        (binder, pipeline): (&Binder, CachedComputePipelineId),
         (uniforms, smoothing): (BindingResource, &ViewSmoothing),
     ) {
-        let (Some(histogram), Some(pipeline)) =
-            (&smoothing.histogram, cache.get_compute_pipeline(pipeline))
-        else {
+        let (Some(histogram), Some(pipeline)) = (
+            &smoothing.histogram,
+            binder.cache.get_compute_pipeline(pipeline),
+        ) else {
             return;
         };
-        let bind_group = device.create_bind_group(
+        let bind_group = binder.group(
             "comics_depth_borders",
-            &cache.get_bind_group_layout(&BorderPipeline::layout()),
+            &BorderPipeline::layout(),
             &[
                 entry(0, uniforms),
                 entry(1, histogram.as_entire_binding()),

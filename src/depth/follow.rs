@@ -9,8 +9,8 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
-            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor,
-            PipelineCache, ShaderStages, ShaderType, SpecializedComputePipeline,
+            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor, ShaderStages,
+            ShaderType, SpecializedComputePipeline,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -22,7 +22,10 @@ use super::{
     DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
     view::RANGE_SIZE,
 };
-use crate::gpu::{buffer, compute_pass, entry};
+use crate::{
+    bind_groups::Binder,
+    gpu::{buffer, compute_pass, entry},
+};
 
 /// Bits of [`SmoothingUniform::flags`], as in `level.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
@@ -197,9 +200,8 @@ impl ViewSmoothing {
     /// Records the smoothing of this frame. `found` holds the keys of the reduction.
     pub fn record(
         &self,
-        device: &RenderDevice,
         encoder: &mut CommandEncoder,
-        cache: &PipelineCache,
+        binder: &Binder,
         pipeline: &ComputePipeline,
         (uniforms, found): (BindingResource, &Buffer),
     ) {
@@ -213,11 +215,7 @@ impl ViewSmoothing {
             entries.push(entry(4, histogram.as_entire_binding()));
         }
         let layout = SmoothingPipeline::layout(self.histogram.is_some());
-        let bind_group = device.create_bind_group(
-            "comics_range_smoothing",
-            &cache.get_bind_group_layout(&layout),
-            &entries,
-        );
+        let bind_group = binder.group("comics_range_smoothing", &layout, &entries);
         let (passed, offsets) = ((pipeline, &bind_group), [self.uniform_offset]);
         let mut pass = compute_pass(encoder, "comics_range_smoothing", passed, &offsets);
         pass.dispatch_workgroups(1, 1, 1);

@@ -3,16 +3,13 @@
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     ecs::resource::Resource,
-    render::{
-        render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, CommandEncoder,
-            ComputePipeline, ComputePipelineDescriptor, IntoBinding, PipelineCache, ShaderStages,
-            SpecializedComputePipeline, TextureSampleType, TextureView,
-            binding_types::{
-                storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
-            },
+    render::render_resource::{
+        BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, CommandEncoder,
+        ComputePipeline, ComputePipelineDescriptor, IntoBinding, ShaderStages,
+        SpecializedComputePipeline, TextureSampleType, TextureView,
+        binding_types::{
+            storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
         },
-        renderer::RenderDevice,
     },
     shader::Shader,
 };
@@ -22,6 +19,7 @@ use super::{
     range::RangeView,
 };
 use crate::{
+    bind_groups::Binder,
     gpu::{compute_pass, definitions, entry},
     samples,
 };
@@ -41,15 +39,15 @@ pub(crate) struct MiddleInputs<'a> {
 /// Records the pass. Writes the depth beside the drawn range, and must be recorded after the
 /// smoothing.
 pub(crate) fn record_middle(
-    (device, encoder): (&RenderDevice, &mut CommandEncoder),
-    (cache, pipeline): (&PipelineCache, &ComputePipeline),
+    encoder: &mut CommandEncoder,
+    (binder, pipeline): (&Binder, &ComputePipeline),
     inputs: MiddleInputs,
     smoothing: &ViewSmoothing,
 ) {
     let layout = MiddlePipeline::layout(inputs.samples);
-    let bind_group = device.create_bind_group(
+    let bind_group = binder.group(
         "comics_middle_depth",
-        &cache.get_bind_group_layout(&layout),
+        &layout,
         &[
             entry(0, inputs.depth.into_binding()),
             entry(1, inputs.views),

@@ -8,10 +8,10 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, CommandEncoder, Extent3d, FragmentState, LoadOp, PipelineCache,
-            RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
-            SpecializedRenderPipeline, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat,
-            TextureSampleType, TextureUsages, TextureView,
+            Buffer, CommandEncoder, Extent3d, FragmentState, LoadOp, RenderPassDescriptor,
+            RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
+            TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureSampleType,
+            TextureUsages, TextureView,
             binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -22,6 +22,7 @@ use bevy::{
 
 use super::range::RangeView;
 use crate::{
+    bind_groups::Binder,
     gpu::{attachment, definitions, texture},
     samples,
 };
@@ -138,23 +139,22 @@ pub(crate) struct ChainSource<'a> {
 /// Records all passes of a chain, then the copy of the result to `keys`.
 pub(crate) fn record_chain(
     chain: &[CachedTexture],
-    device: &RenderDevice,
     encoder: &mut CommandEncoder,
-    cache: &PipelineCache,
+    binder: &Binder,
     (first, next): (&RenderPipeline, &RenderPipeline),
     (from, keys): (&ChainSource, &Buffer),
 ) {
     let mut source: Option<&TextureView> = None;
     for target in chain {
         let bind_group = match source {
-            None => device.create_bind_group(
+            None => binder.group(
                 "comics_ping_pong_first",
-                &cache.get_bind_group_layout(&PingPongPipeline::first_layout(from.multisampled)),
+                &PingPongPipeline::first_layout(from.multisampled),
                 &BindGroupEntries::sequential((from.depth, from.view.clone())),
             ),
-            Some(view) => device.create_bind_group(
+            Some(view) => binder.group(
                 "comics_ping_pong_next",
-                &cache.get_bind_group_layout(&PingPongPipeline::next_layout()),
+                &PingPongPipeline::next_layout(),
                 &BindGroupEntries::single(view),
             ),
         };

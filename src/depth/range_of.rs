@@ -6,8 +6,8 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
-            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor,
-            PipelineCache, ShaderStages, ShaderType, SpecializedComputePipeline,
+            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor, ShaderStages,
+            ShaderType, SpecializedComputePipeline,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -16,7 +16,10 @@ use bevy::{
 };
 
 use super::{frame::DepthProjection, view::RANGE_SIZE};
-use crate::gpu::{buffer, compute_pass, entry};
+use crate::{
+    bind_groups::Binder,
+    gpu::{buffer, compute_pass, entry},
+};
 
 /// `Conversion` of `range_of.wgsl`: raw depth of a view from that of another one at the same
 /// distance.
@@ -65,13 +68,13 @@ impl TakenRange {
 
     pub fn record(
         &self,
-        (device, encoder): (&RenderDevice, &mut CommandEncoder),
-        cache: &PipelineCache,
+        encoder: &mut CommandEncoder,
+        binder: &Binder,
         (pipeline, uniforms): (&ComputePipeline, BindingResource),
     ) {
-        let bind_group = device.create_bind_group(
+        let bind_group = binder.group(
             "comics_range_of",
-            &cache.get_bind_group_layout(&RangeOfPipeline::layout()),
+            &RangeOfPipeline::layout(),
             &[
                 entry(0, uniforms),
                 entry(1, self.from.as_entire_binding()),

@@ -9,7 +9,7 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindingResource, CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline,
-            IntoBinding, PipelineCache, TextureView,
+            IntoBinding, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -26,6 +26,7 @@ use super::{
     surfaces::{OwnSurfaces, Surfaces},
 };
 use crate::{
+    bind_groups::Binder,
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     gpu::{compute_pass, entry},
 };
@@ -36,7 +37,7 @@ pub(crate) fn reduce_depth_range(
     uniforms: Res<RangeUniforms>,
     ledger: Res<StageLedger>,
     pipeline: Res<RangePipeline>,
-    cache: Res<PipelineCache>,
+    binder: Binder,
     mut ctx: RenderContext,
 ) {
     let (prepass, own, range) = view.into_inner();
@@ -45,7 +46,7 @@ pub(crate) fn reduce_depth_range(
     let frame = Frame {
         range,
         uniforms: &uniforms,
-        cache: &cache,
+        binder: &binder,
     };
     match frame.record(surfaces, &pipeline, &mut ctx) {
         Ok(method) => {
@@ -68,7 +69,7 @@ pub(crate) fn reduce_depth_range(
 struct Frame<'a> {
     range: &'a ViewDepthRange,
     uniforms: &'a RangeUniforms,
-    cache: &'a PipelineCache,
+    binder: &'a Binder<'a>,
 }
 
 impl Frame<'_> {
@@ -84,7 +85,10 @@ impl Frame<'_> {
         let conversion = match (self.range.passes.conversion, &self.range.taken) {
             (Some(id), Some(taken)) => Some((
                 taken,
-                self.cache.get_compute_pipeline(id).ok_or(not_ready)?,
+                self.binder
+                    .cache
+                    .get_compute_pipeline(id)
+                    .ok_or(not_ready)?,
                 self.uniforms.conversions.binding().ok_or(not_ready)?,
             )),
             (Some(_), None) => return Err(not_ready),
@@ -98,17 +102,25 @@ impl Frame<'_> {
         let smoothing = match (self.range.passes.smoothing, &self.range.smoothing) {
             (Some(id), Some(smoothing)) => Some((
                 smoothing,
-                self.cache.get_compute_pipeline(id).ok_or(not_ready)?,
+                self.binder
+                    .cache
+                    .get_compute_pipeline(id)
+                    .ok_or(not_ready)?,
                 self.uniforms.smoothings.binding().ok_or(not_ready)?,
             )),
             _ => None,
         };
         let borders = self.range.passes.borders;
-        if borders.is_some_and(|id| self.cache.get_compute_pipeline(id).is_none()) {
+        if borders.is_some_and(|id| self.binder.cache.get_compute_pipeline(id).is_none()) {
             return Err(not_ready);
         }
         let middle = match self.range.passes.middle {
-            Some(id) => Some(self.cache.get_compute_pipeline(id).ok_or(not_ready)?),
+            Some(id) => Some(
+                self.binder
+                    .cache
+                    .get_compute_pipeline(id)
+                    .ok_or(not_ready)?,
+            ),
             None => None,
         };
         let depth = &depth.default_view;
@@ -136,9 +148,7 @@ impl Frame<'_> {
             self.follow(smoothing, (pipeline, middle), inputs, ctx);
         }
         if let Some((taken, pipeline, uniforms)) = conversion {
-            let device = ctx.render_device().clone();
-            let target = (&device, ctx.command_encoder());
-            taken.record(target, self.cache, (pipeline, uniforms));
+            taken.record(ctx.command_encoder(), self.binder, (pipeline, uniforms));
             if let Some(smoothing) = &self.range.smoothing {
                 taken.keep_own(ctx.command_encoder(), &smoothing.drawn);
             }
@@ -155,7 +165,6 @@ impl Frame<'_> {
         inputs: MiddleInputs,
         ctx: &mut RenderContext,
     ) {
-        let device = ctx.render_device().clone();
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
@@ -163,19 +172,17 @@ impl Frame<'_> {
         if let Some(pipeline) = pipeline {
             let span = diagnostics.time_span(encoder, "comics_range_smoothing");
             let read = (uniforms.clone(), &self.range.keys);
-            smoothing.record(&device, encoder, self.cache, pipeline, read);
+            smoothing.record(encoder, self.binder, pipeline, read);
             span.end(encoder);
         }
         if let Some((id, borders)) = self.range.passes.borders.zip(self.range.borders.as_ref()) {
             let span = diagnostics.time_span(encoder, "comics_depth_borders");
-            let target = (&device, &mut *encoder);
-            borders.record(target, (self.cache, id), (uniforms, smoothing));
+            borders.record(encoder, (self.binder, id), (uniforms, smoothing));
             span.end(encoder);
         }
         if let Some(pipeline) = middle {
             let span = diagnostics.time_span(encoder, "comics_middle_depth");
-            let target = (&device, &mut *encoder);
-            record_middle(target, (self.cache, pipeline), inputs, smoothing);
+            record_middle(encoder, (self.binder, pipeline), inputs, smoothing);
             span.end(encoder);
         }
     }
@@ -189,6 +196,7 @@ impl Frame<'_> {
     ) -> Result<ReductionMethod, SkipReason> {
         let range = self.range;
         let compute = self
+            .binder
             .cache
             .get_compute_pipeline(id)
             .ok_or(SkipReason::PipelineNotReady)?;
@@ -209,11 +217,8 @@ impl Frame<'_> {
         if let Some(histogram) = histogram {
             entries.push(entry(4, histogram.as_entire_binding()));
         }
-        let layout = self
-            .cache
-            .get_bind_group_layout(&RangePipeline::layout(key));
-        let device = ctx.render_device();
-        let bind_group = device.create_bind_group("comics_depth_range", &layout, &entries);
+        let layout = RangePipeline::layout(key);
+        let bind_group = self.binder.group("comics_depth_range", &layout, &entries);
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
@@ -236,7 +241,8 @@ impl Frame<'_> {
         ctx: &mut RenderContext,
     ) -> Result<ReductionMethod, SkipReason> {
         let pipeline = |id| {
-            self.cache
+            self.binder
+                .cache
                 .get_render_pipeline(id)
                 .ok_or(SkipReason::PipelineNotReady)
         };
@@ -247,16 +253,14 @@ impl Frame<'_> {
             offset: self.range.view_offset,
             multisampled: self.range.request.samples > 1,
         };
-        let device = ctx.render_device().clone();
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
         let span = diagnostics.time_span(encoder, "comics_depth_range");
         record_chain(
             &self.range.chain,
-            &device,
             encoder,
-            self.cache,
+            self.binder,
             pipelines,
             (&source, &self.range.keys),
         );

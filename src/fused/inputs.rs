@@ -5,9 +5,9 @@ use bevy::{
     render::{
         render_resource::{
             AddressMode, BindGroup, BindGroupEntry, BindingResource, FilterMode, IntoBinding,
-            PipelineCache, Sampler, SamplerDescriptor, TextureView,
+            Sampler, SamplerDescriptor, TextureView,
         },
-        renderer::{RenderContext, RenderDevice},
+        renderer::RenderDevice,
         texture::CachedTexture,
         view::ViewDepthTexture,
     },
@@ -15,6 +15,7 @@ use bevy::{
 
 use super::{blue_noise::BlueNoise, key::StylizeKey};
 use crate::{
+    bind_groups::Binder,
     composite::DRAWN_DEPTH_BINDING,
     depth::{
         prepare::ViewDepthRange,
@@ -56,7 +57,7 @@ pub(super) type Found<'a> = (
 pub(super) struct Inputs<'a> {
     pub entries: Vec<BindGroupEntry<'a>>,
     pub sampler: &'a LayerSampler,
-    pub cache: &'a PipelineCache,
+    pub binder: &'a Binder<'a>,
 }
 
 /// What the passes before a pass have drawn for it.
@@ -68,7 +69,7 @@ pub(super) struct Before<'a> {
 }
 
 impl Inputs<'_> {
-    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
+    pub fn bind_group(&self, key: &StylizeKey, before: &Before) -> BindGroup {
         let mut entries = self.entries.clone();
         if let Some(picture) = before.picture {
             entries.push(entry(9, picture.into_binding()));
@@ -77,9 +78,7 @@ impl Inputs<'_> {
         if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
             entries.push(entry(binding, words.into_binding()));
         }
-        let layout = self.cache.get_bind_group_layout(&key.layout());
-        let device = ctx.render_device();
-        device.create_bind_group("comics_stylize", &layout, &entries)
+        (self.binder).group("comics_stylize", &key.layout(), &entries)
     }
 }
 

@@ -145,7 +145,7 @@ impl<'a> Draw<'a> {
 
     /// Returns what it has drawn.
     fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
-        let bind_group = inputs.bind_group(ctx, self.key, before);
+        let bind_group = inputs.bind_group(self.key, before);
         let attachments = [Some(attachment(self.texture, LoadOp::default()))];
         let encoder = ctx.command_encoder();
         let mut pass = encoder.begin_render_pass(&described(&attachments));

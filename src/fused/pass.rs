@@ -27,6 +27,7 @@ use super::{
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
+    bind_groups::Binder,
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     gpu::{attachment, entry},
@@ -102,7 +103,7 @@ pub(super) fn stylize<const PRINTS: bool>(
     (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
     blue_noise: Res<BlueNoise>,
     (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
-    cache: Res<PipelineCache>,
+    binder: Binder,
     mut ctx: RenderContext,
 ) {
     let ((target, request, fused, layers), found) = view.into_inner();
@@ -110,9 +111,10 @@ pub(super) fn stylize<const PRINTS: bool>(
         return;
     }
     let (_, _, lines, _) = found;
-    let layers = Layers::new(&cache, request, layers);
-    let (Some(draws), Some(layers)) = (Draws::new(&cache, request, lines), layers) else {
-        errors.report(&cache, request, &ledger);
+    let cache = &*binder.cache;
+    let layers = Layers::new(cache, request, layers);
+    let (Some(draws), Some(layers)) = (Draws::new(cache, request, lines), layers) else {
+        errors.report(cache, request, &ledger);
         return pass_through(request, &ledger, SkipReason::PipelineNotReady);
     };
     let found = if target.main_texture_format() == request.key.format {
@@ -138,10 +140,10 @@ pub(super) fn stylize<const PRINTS: bool>(
     let inputs = Inputs {
         entries,
         sampler: &sampler,
-        cache: &cache,
+        binder: &binder,
     };
     let before = layers.record(&mut ctx, &inputs);
-    let group = inputs.bind_group(&ctx, &request.key, &before);
+    let group = inputs.bind_group(&request.key, &before);
     draws.record(&mut ctx, destination, &group, request);
     span.end(ctx.command_encoder());
     ran(request, &ledger);

@@ -44,6 +44,7 @@ use super::{
     shared::Shared,
     simplification::{BY_DISTANCE, Dials},
 };
+use crate::bind_groups::Binder;
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
     gpu::{Table, buffer, compute_pass, entry},
@@ -340,7 +341,7 @@ type Placed<'w, 's> = (
         (
             Entity,
             &'static ObjectDepthRequest,
-            Option<&'static ViewPlaces>,
+            Option<&'static mut ViewPlaces>,
             Option<&'static ObjectDepths>,
         ),
     >,
@@ -349,7 +350,7 @@ type Placed<'w, 's> = (
 
 fn prepare_places(
     mut commands: Commands,
-    (views, stale): Placed,
+    (mut views, stale): Placed,
     (mut bounds, ids): (ResMut<ObjectBounds>, Res<ObjectIds>),
     (pipeline, cache): (Res<PlacePipeline>, Res<PipelineCache>),
     mut pipelines: ResMut<SpecializedComputePipelines<PlacePipeline>>,
@@ -365,9 +366,13 @@ fn prepare_places(
     bounds.table.write(&device, &queue);
     let places = (ids.last() as u64 + 1).next_power_of_two();
     let size = PLACE * places.max(LEAST_PLACES);
-    for (entity, request, known, table) in &views {
-        let forgets = known.is_none_or(|places| places.is_past(request));
-        let mut uniform = UniformBuffer::from(ObjectEye {
+    for (entity, request, mut known, table) in &mut views {
+        let forgets = known.as_ref().is_none_or(|places| places.is_past(request));
+        let known = known
+            .as_mut()
+            .map(|places| std::mem::take(&mut places.uniform));
+        let mut uniform = known.unwrap_or_default();
+        uniform.set(ObjectEye {
             forgets: u32::from(forgets),
             ..request.eye
         });
@@ -393,13 +398,13 @@ fn prepare_places(
 fn place_objects(
     view: ViewQuery<(&ViewPlaces, &ObjectDepths, Option<&ViewDepthRange>)>,
     bounds: Res<ObjectBounds>,
-    cache: Res<PipelineCache>,
+    binder: Binder,
     mut ctx: RenderContext,
 ) {
     let (places, table, range) = view.into_inner();
     let keys = range.and_then(ViewDepthRange::drawn);
     let (Some(pipeline), Some(uniform), Some(objects), true) = (
-        cache.get_compute_pipeline(places.pipeline),
+        binder.cache.get_compute_pipeline(places.pipeline),
         places.uniform.binding(),
         bounds.binding(),
         keys.is_some() || !places.reads_range(),
@@ -415,10 +420,8 @@ fn place_objects(
     if let Some(keys) = keys.filter(|_| places.reads_range()) {
         entries.push(entry(3, keys.as_entire_binding()));
     }
-    let layout = cache.get_bind_group_layout(&PlacePipeline::layout(places.reads_range()));
-    let group = ctx
-        .render_device()
-        .create_bind_group("comics_object_depths", &layout, &entries);
+    let layout = PlacePipeline::layout(places.reads_range());
+    let group = binder.group("comics_object_depths", &layout, &entries);
     let encoder = ctx.command_encoder();
     let mut pass = compute_pass(encoder, "comics_object_depths", (pipeline, &group), &[]);
     pass.dispatch_workgroups((bounds.table.len() as u32).div_ceil(64), 1, 1);

@@ -1,6 +1,6 @@
 //! The buffers of the instances of a view.
 
-use bevy::render::render_resource::{BindGroup, BufferId};
+use bevy::render::render_resource::BindGroup;
 
 use crate::gpu::Table;
 
@@ -12,15 +12,8 @@ pub(crate) struct InstanceBuffers {
     /// The records of the instances, after as many unused ones as there are instances of other
     /// passes before them.
     pub records: Table<4>,
-    pub expansion: Option<Expansion>,
-    /// What the passes bind, and the buffers that are bound.
-    pub bound: Option<([BufferId; 2], BindGroup)>,
-}
-
-/// What expands the instances of a view.
-#[derive(Clone)]
-pub(crate) struct Expansion {
-    /// The buffers that are bound, and the number of instances.
-    pub key: ([BufferId; 5], usize),
-    pub group: BindGroup,
+    /// What the pass that expands them binds.
+    pub expansion: Option<BindGroup>,
+    /// What the passes that draw them bind.
+    pub bound: Option<BindGroup>,
 }

@@ -23,12 +23,15 @@ use bevy::{
 };
 
 use super::{
-    instance_buffers::{Expansion, InstanceBuffers},
+    instance_buffers::InstanceBuffers,
     phase::{Instance, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::ObjectIdPipeline,
     sections::SectionBuffer,
 };
-use crate::gpu::{compute_pass, entry};
+use crate::{
+    bind_groups::Binder,
+    gpu::{compute_pass, entry},
+};
 
 /// The engine's buffers of mesh instances: one of them exists, depending on who expands meshes.
 #[derive(SystemParam)]
@@ -136,20 +139,9 @@ impl ObjectIdPhase {
         Some([self.buffers.records.buffer()?, sections.buffer()?])
     }
 
-    /// Binds the buffers, unless they are bound.
-    fn bind(&mut self, sections: &SectionBuffer, bind: impl FnOnce([&Buffer; 2]) -> BindGroup) {
-        let known = self.buffers.bound.take();
-        self.buffers.bound = self.bound(sections).map(|buffers| {
-            let key = buffers.map(|buffer| buffer.id());
-            known
-                .filter(|known| known.0 == key)
-                .unwrap_or_else(|| (key, bind(buffers)))
-        });
-    }
-
     /// What the passes bind; `None` without a mesh.
     pub fn bind_group(&self) -> Option<&BindGroup> {
-        self.buffers.bound.as_ref().map(|(_, group)| group)
+        self.buffers.bound.as_ref()
     }
 
     fn upload(&mut self, device: &RenderDevice, queue: &RenderQueue) {
@@ -168,47 +160,35 @@ pub(super) struct Expanding<'w> {
 
 impl Expanding<'_> {
     /// `None` if nothing is expanded on the GPU, or if the engine has no buffers.
-    fn expansion(
-        &self,
-        view: &InstanceBuffers,
-        (device, cache): (&RenderDevice, &PipelineCache),
-    ) -> Option<Expansion> {
+    fn expansion(&self, view: &InstanceBuffers, binder: &Binder) -> Option<BindGroup> {
+        if view.work.len() == 0 {
+            return None;
+        }
         let engine = self.buffers.as_ref()?;
         let output = engine
             .phase_instance_buffers
             .get(&TypeId::of::<ObjectIdItem>())?;
-        let bound = [
-            self.views.uniforms.buffer()?,
-            engine.current_input_buffer.buffer().buffer()?,
-            engine.previous_input_buffer.buffer()?,
-            view.work.buffer()?,
-            output.data_buffer.buffer()?,
-        ];
-        let key = (bound.map(|buffer| buffer.id()), view.work.len());
-        if let Some(known) = view.expansion.as_ref().filter(|known| known.key == key) {
-            return Some(known.clone());
-        }
-        let [_, current, previous, work, output] = bound;
+        let current = engine.current_input_buffer.buffer().buffer()?;
+        let previous = engine.previous_input_buffer.buffer()?;
         let size = view.work.len() * size_of::<PreprocessWorkItem>();
         // The shader reads the length of the array, and a buffer may be longer.
         let work = BindingResource::Buffer(BufferBinding {
-            buffer: work,
+            buffer: view.work.buffer()?,
             offset: 0,
             size: Some(NonZero::new(size as u64)?),
         });
         let pipeline = &self.pipelines.as_ref()?.direct_preprocess;
-        let group = device.create_bind_group(
+        Some(binder.group(
             "comics_object_instances",
-            &cache.get_bind_group_layout(&pipeline.bind_group_layout),
+            &pipeline.bind_group_layout,
             &[
                 entry(0, self.views.uniforms.binding()?),
                 entry(3, current.as_entire_binding()),
                 entry(4, previous.as_entire_binding()),
                 entry(5, work),
-                entry(6, output.as_entire_binding()),
+                entry(6, output.data_buffer.buffer()?.as_entire_binding()),
             ],
-        );
-        Some(Expansion { key, group })
+        ))
     }
 }
 
@@ -217,23 +197,17 @@ pub(super) fn bind_instances(
     mut phases: ResMut<ObjectIdPhases>,
     expanding: Expanding,
     sections: Res<SectionBuffer>,
-    (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
-    device: Res<RenderDevice>,
+    shared: Res<ObjectIdPipeline>,
+    binder: Binder,
 ) {
     for phase in phases.0.values_mut() {
-        let buffers = &mut phase.buffers;
-        buffers.expansion = if buffers.work.len() == 0 {
-            None
-        } else {
-            expanding.expansion(buffers, (&device, &cache))
-        };
-        phase.bind(&sections, |[objects, sections]| {
+        phase.buffers.expansion = expanding.expansion(&phase.buffers, &binder);
+        phase.buffers.bound = phase.bound(&sections).map(|[objects, sections]| {
             let entries = [
                 entry(0, objects.as_entire_binding()),
                 entry(1, sections.as_entire_binding()),
             ];
-            let layout = cache.get_bind_group_layout(&shared.layout);
-            device.create_bind_group("comics_objects", &layout, &entries)
+            binder.group("comics_objects", &shared.layout, &entries)
         });
     }
 }
@@ -256,7 +230,7 @@ pub(super) fn expand_instances(
     let (Some(expansion), Some(pipeline)) = (&phase.buffers.expansion, pipeline) else {
         return;
     };
-    let bound = (pipeline, &expansion.group);
+    let bound = (pipeline, expansion);
     let encoder = ctx.command_encoder();
     let mut pass = compute_pass(encoder, "comics_object_instances", bound, &[offset.offset]);
     pass.dispatch_workgroups((phase.buffers.work.len() as u32).div_ceil(64), 1, 1);

@@ -72,7 +72,7 @@ impl<const I: usize> RenderCommand<ObjectIdItem> for SetObjectTable<I> {
     ) -> RenderCommandResult {
         // Only the pipelines of ids draw widths, and compare depth with a tolerance.
         let own = tolerant.map(|tolerant| &tolerant.bind_group);
-        let own = own.or(widths.map(|widths| &widths.0));
+        let own = own.or(widths.map(|widths| &widths.group));
         let bind_group = match own.filter(|_| item.bin.layer == Layer::Prepass) {
             Some(own) => own.as_ref(),
             None => phases.into_inner().bind_group(view.retained_view_entity),

@@ -15,10 +15,10 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
         render_resource::{
-            BindGroup, IntoBinding, LoadOp, PipelineCache, RenderPassColorAttachment,
+            BindGroup, BindingResource, IntoBinding, LoadOp, RenderPassColorAttachment,
             TextureUsages, TextureView, UniformBuffer,
         },
-        renderer::{RenderDevice, RenderQueue},
+        renderer::RenderQueue,
         sync_world::MainEntityHashSet,
         texture::TextureCache,
         view::{ExtractedView, RetainedViewEntity},
@@ -26,7 +26,7 @@ use bevy::{
 };
 
 use super::{
-    IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
+    IdRequest, IdsWanted, ObjectStyles, Pressure, ViewLineWidths,
     changes::Follow,
     inherit::{Inherit, Inherited},
     phase::ObjectIdPhases,
@@ -35,7 +35,7 @@ use super::{
     shared::Shared,
     widths::WIDTH_FORMAT,
 };
-use crate::gpu;
+use crate::{bind_groups::Binder, gpu};
 
 /// The alpha of this mesh's vertex colours
 /// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
@@ -137,10 +137,13 @@ impl WidthViews {
     }
 }
 
-/// On a view whose widths are drawn: what the pass binds instead of
-/// `ObjectIdPhase::bind_group`; `None` if there is no object.
-#[derive(Component)]
-pub(super) struct WidthBindings(pub Option<BindGroup>);
+/// On a view whose widths are drawn.
+#[derive(Component, Default)]
+pub(super) struct WidthBindings {
+    pressure: UniformBuffer<Pressure>,
+    /// What the pass binds instead of `ObjectIdPhase::bind_group`; `None` if there is no object.
+    pub group: Option<BindGroup>,
+}
 
 /// What binds the objects of a view.
 #[derive(SystemParam)]
@@ -149,9 +152,8 @@ pub(super) struct Drawing<'w> {
     phases: Res<'w, ObjectIdPhases>,
     sections: Res<'w, SectionBuffer>,
     shared: Res<'w, ObjectIdPipeline>,
-    cache: Res<'w, PipelineCache>,
-    device: Res<'w, RenderDevice>,
-    queue: Res<'w, RenderQueue>,
+    pub binder: Binder<'w>,
+    pub queue: Res<'w, RenderQueue>,
 }
 
 impl Drawing<'_> {
@@ -160,23 +162,22 @@ impl Drawing<'_> {
         self.queued.0.contains(&view)
     }
 
-    /// What the pass of object ids binds; `None` without an object. `depth`: that of the
-    /// prepass, if depth is compared with a tolerance.
+    /// What the pass of object ids binds; `None` without an object. `pressure`: that
+    /// of its lines, if their widths are drawn; `depth`: that of the prepass, if depth is compared
+    /// with a tolerance.
     pub fn bind_group(
         &self,
         (view, request): (RetainedViewEntity, &IdRequest),
-        widths: bool,
+        pressure: Option<BindingResource>,
         depth: Option<&TextureView>,
     ) -> Option<BindGroup> {
-        let mut pressure = UniformBuffer::from(request.pressure.unwrap_or_default());
         let [objects, sections] = self.phases.0.get(&view)?.bound(&self.sections)?;
         let mut entries = vec![
             gpu::entry(0, objects.as_entire_binding()),
             gpu::entry(1, sections.as_entire_binding()),
         ];
-        let mut layout = if widths {
-            pressure.write_buffer(&self.device, &self.queue);
-            entries.push(gpu::entry(2, pressure.binding()?));
+        let mut layout = if let Some(pressure) = pressure {
+            entries.push(gpu::entry(2, pressure));
             self.shared.with_widths.clone()
         } else {
             self.shared.layout.clone()
@@ -185,9 +186,10 @@ impl Drawing<'_> {
             entries.push(gpu::entry(3, depth.into_binding()));
             layout = with_prepass_depth(&layout, request.samples > 1);
         }
-        let layout = self.cache.get_bind_group_layout(&layout);
-        let group = (self.device).create_bind_group("comics_objects_of_view", &layout, &entries);
-        Some(group)
+        Some(
+            self.binder
+                .group("comics_objects_of_view", &layout, &entries),
+        )
     }
 }
 
@@ -200,25 +202,36 @@ type Stale = (
 /// Gets the textures of this frame, and binds what is drawn into them.
 pub(super) fn prepare_line_widths(
     mut commands: Commands,
-    views: Query<(Entity, &ExtractedView, &IdRequest)>,
+    mut views: Query<(
+        Entity,
+        &ExtractedView,
+        &IdRequest,
+        Option<&mut WidthBindings>,
+    )>,
     stale: Query<Entity, Stale>,
     drawing: Drawing,
     mut textures: ResMut<TextureCache>,
 ) {
-    for (entity, view, request) in &views {
+    for (entity, view, request, known) in &mut views {
         let mut target = commands.entity(entity);
         if !drawing.draws_widths(view.retained_view_entity) {
             target.remove::<(ViewLineWidths, WidthBindings)>();
             continue;
         }
+        let mut bindings = known
+            .map(|mut known| std::mem::take(&mut *known))
+            .unwrap_or_default();
+        bindings.pressure.set(request.pressure.unwrap_or_default());
+        (bindings.pressure).write_buffer(&drawing.binder.device, &drawing.queue);
+        let view = view.retained_view_entity;
+        let pressure = bindings.pressure.binding();
+        bindings.group = drawing.bind_group((view, request), pressure, None);
         let usage = TextureUsages::RENDER_ATTACHMENT
             | TextureUsages::TEXTURE_BINDING
             | TextureUsages::COPY_SRC;
         let size = (request.size, request.samples);
         let descriptor = gpu::texture("comics_line_widths", size, WIDTH_FORMAT, usage);
-        let texture = ViewLineWidths::from(textures.get(&drawing.device, descriptor));
-        let bindings =
-            WidthBindings(drawing.bind_group((view.retained_view_entity, request), true, None));
+        let texture = ViewLineWidths::from(textures.get(&drawing.binder.device, descriptor));
         target.insert((texture, bindings));
     }
     for entity in &stale {

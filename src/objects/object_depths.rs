@@ -12,7 +12,7 @@ use bevy::{
 use crate::depth::{DepthMapping, view::ViewUniform};
 
 /// `Eye` of `depths.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
+#[derive(ShaderType, Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct ObjectEye {
     pub place: Vec3,
     pub orthographic: u32,

@@ -2,6 +2,8 @@
 
 use bevy::ecs::world::World;
 
+use crate::bind_groups::BindGroups;
+
 use super::{depths::ObjectBounds, phase::ObjectIdPhases, sections::SectionBuffer};
 
 /// What the passes of object ids do in all views.
@@ -15,6 +17,8 @@ pub struct ObjectWork {
     pub queued: usize,
     /// Bytes of instances, sections and boxes that were uploaded, in all frames so far.
     pub uploaded: usize,
+    /// Bind groups that the plugin's passes have made, in all frames so far.
+    pub bind_groups: usize,
 }
 
 impl ObjectWork {
@@ -27,12 +31,16 @@ impl ObjectWork {
         let sections = sections.map_or(0, |sections| sections.words.written);
         let shared = Self {
             uploaded: sections + boxes.map_or(0, |boxes| boxes.table.written),
+            bind_groups: render_world
+                .get_resource::<BindGroups>()
+                .map_or(0, BindGroups::made),
             ..Self::default()
         };
         phases.fold(shared, |sum, phase| Self {
             draw_calls: sum.draw_calls + phase.items.len(),
             instances: sum.instances + phase.items.iter().map(|i| i.instances.len()).sum::<usize>(),
             queued: sum.queued + phase.added,
+            bind_groups: sum.bind_groups,
             uploaded: sum.uploaded + phase.buffers.work.written + phase.buffers.records.written,
         })
     }

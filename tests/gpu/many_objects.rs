@@ -8,7 +8,10 @@ use bevy::{
         batching::NoAutomaticBatching, occlusion_culling::OcclusionCulling, view::NoIndirectDrawing,
     },
 };
-use bevy_comics::{objects::ObjectSimplification, testing::ObjectWork};
+use bevy_comics::{
+    objects::{LineWidths, ObjectSimplification, SelectionOutline},
+    testing::ObjectWork,
+};
 
 use crate::prelude::*;
 
@@ -240,6 +243,40 @@ fn a_frame_uploads_what_has_changed() {
     step(&mut small, "one is simplified", 48);
     small.on(cubes[9].entity).insert(OutlineGroup);
     step(&mut small, "one is a group of its own", 0);
+}
+
+/// While nothing changes, the passes of a view bind what they have bound before.
+#[test]
+fn a_still_view_makes_no_bind_groups() {
+    let mut small = Small::new(UVec2::splat(SIDE), Msaa::Sample4);
+    small.clear();
+    let cubes = put_cubes(&mut small, 20, |_, _| {});
+    small.on(cubes[0].entity).insert(LineWidths::default());
+    small
+        .on(cubes[1].entity)
+        .insert(SelectionOutline::default());
+    let at = Transform::from_xyz(0.0, 0.0, 60.0);
+    let lines = Outlines {
+        ink_budget: 0.5,
+        overshoot: 3.0,
+        ..default()
+    };
+    let sharp = Focus {
+        at: FocusAt::Center,
+        ..default()
+    };
+    small.insert((at, lines, Abstraction::default(), Halftone::default()));
+    small.insert((DepthLayers::default(), sharp, Paint::default()));
+    small.settle();
+    // The two textures of the picture take turns.
+    small.headless.step(4);
+    let before = work(&small).bind_groups;
+    assert!(before > 20, "{before}");
+    small.headless.step(4);
+    assert_eq!(work(&small).bind_groups, before);
+    small.camera_mut().remove::<Paint>();
+    small.settle();
+    assert!(work(&small).bind_groups > before, "without paint");
 }
 
 /// The levels of detail of an object are in one place, and the GPU draws the one that is in range.

@@ -7,7 +7,7 @@ use bevy::{
     ecs::system::Res,
     render::{
         diagnostic::RecordDiagnostics,
-        render_resource::{CommandEncoder, PipelineCache, RenderPassDescriptor, RenderPipeline},
+        render_resource::{CommandEncoder, RenderPassDescriptor, RenderPipeline},
         renderer::{RenderContext, ViewQuery},
         texture::CachedTexture,
     },
@@ -20,12 +20,8 @@ use super::{
     ready::{Ready, ReadyCracks, search_tiles},
     sources::Sources,
 };
-#[cfg(feature = "objects")]
 use crate::{
-    depth::surfaces::prepass_is_empty,
-    objects::{MarkStyleBuffer, ViewLayer},
-};
-use crate::{
+    bind_groups::Binder,
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     lines::{
@@ -33,6 +29,11 @@ use crate::{
         textures::cleared,
     },
     objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
+};
+#[cfg(feature = "objects")]
+use crate::{
+    depth::surfaces::prepass_is_empty,
+    objects::{MarkStyleBuffer, ViewLayer},
 };
 #[cfg(feature = "objects")]
 use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
@@ -49,7 +50,7 @@ pub(crate) fn find_marks(
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
     styles: Res<MarkStyleBuffer>,
     ledger: Res<StageLedger>,
-    (cache, adapter): (Res<PipelineCache>, Res<RenderAdapterInfo>),
+    (binder, adapter): (Binder, Res<RenderAdapterInfo>),
     mut ctx: RenderContext,
 ) {
     let (marks, (prepass, own), layer) = view.into_inner();
@@ -65,8 +66,7 @@ pub(crate) fn find_marks(
         sources: Sources::new((Some(prepass), own), None, None).layer(layer),
         range: None,
         styles: &styles.0,
-        cache: &cache,
-        device: ctx.render_device().clone(),
+        binder: &binder,
     };
     match inputs.record(&mut ctx) {
         Ok(()) => lines.found.store(true, Ordering::Relaxed),
@@ -91,7 +91,7 @@ pub(crate) fn find_lines(
     )>,
     object_styles: Res<ObjectStyleBuffer>,
     ledger: Res<StageLedger>,
-    cache: Res<PipelineCache>,
+    binder: Binder,
     mut ctx: RenderContext,
 ) {
     let ((request, passes, lines), prepass, range, (ids, widths, places)) = view.into_inner();
@@ -102,8 +102,7 @@ pub(crate) fn find_lines(
         sources: Sources::new(prepass, ids, widths).with_places(places),
         range,
         styles: &object_styles,
-        cache: &cache,
-        device: ctx.render_device().clone(),
+        binder: &binder,
     };
     let outcome = match inputs.record(&mut ctx) {
         Ok(()) => {

@@ -3,10 +3,8 @@
 use bevy::render::{
     render_resource::{
         BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, CachedComputePipelineId,
-        CachedRenderPipelineId, ComputePipeline, IntoBinding, PipelineCache, RenderPipeline,
-        TextureView,
+        CachedRenderPipelineId, ComputePipeline, IntoBinding, RenderPipeline, TextureView,
     },
-    renderer::RenderDevice,
     texture::CachedTexture,
 };
 
@@ -15,6 +13,7 @@ use super::{
     sources::{NOT_READY, Reads, Sources, Texels},
 };
 use crate::{
+    bind_groups::Binder,
     depth::prepare::ViewDepthRange,
     diagnostics::SkipReason,
     gpu::entry,
@@ -39,8 +38,7 @@ pub(super) struct Inputs<'a> {
     pub range: Option<&'a ViewDepthRange>,
     /// The table of the styles of objects.
     pub styles: &'a ObjectStyleBuffer,
-    pub cache: &'a PipelineCache,
-    pub device: RenderDevice,
+    pub binder: &'a Binder<'a>,
 }
 
 /// The pass that remembers, ready to be recorded.
@@ -57,7 +55,7 @@ impl Inputs<'_> {
         layout: &BindGroupLayoutDescriptor,
         entries: &[BindGroupEntry],
     ) -> Result<Ready<'_, RenderPipeline>, SkipReason> {
-        let pipeline = self.cache.get_render_pipeline(id).ok_or(NOT_READY)?;
+        let pipeline = self.binder.cache.get_render_pipeline(id).ok_or(NOT_READY)?;
         Ok((pipeline, self.group(layout, entries)?))
     }
 
@@ -68,7 +66,11 @@ impl Inputs<'_> {
         layout: &BindGroupLayoutDescriptor,
         entries: &[BindGroupEntry],
     ) -> Result<Ready<'_, ComputePipeline>, SkipReason> {
-        let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
+        let pipeline = self
+            .binder
+            .cache
+            .get_compute_pipeline(id)
+            .ok_or(NOT_READY)?;
         Ok((pipeline, self.group(layout, entries)?))
     }
 
@@ -79,8 +81,7 @@ impl Inputs<'_> {
     ) -> Result<BindGroup, SkipReason> {
         let mut all = vec![entry(1, self.lines.uniform.binding().ok_or(NOT_READY)?)];
         all.extend_from_slice(entries);
-        let layout = self.cache.get_bind_group_layout(layout);
-        Ok(self.device.create_bind_group("comics_lines", &layout, &all))
+        Ok(self.binder.group("comics_lines", layout, &all))
     }
 
     /// The surfaces of the view.

@@ -13,7 +13,7 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntry, BindGroupLayoutDescriptor, BlendState, CachedRenderPipelineId,
-            ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp, PipelineCache,
+            ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp,
             RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
             SpecializedRenderPipeline, TextureFormat, TextureSampleType,
             binding_types::{texture_2d, uniform_buffer},
@@ -25,6 +25,7 @@ use bevy::{
 };
 
 use crate::{
+    bind_groups::Binder,
     gpu::{attachment, entry},
     lines::{
         passes::LinePasses,
@@ -139,7 +140,7 @@ pub(crate) fn draw_marks<const LATE: bool>(
     view: ViewQuery<(&ViewTarget, &ViewMarks)>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
     styles: Res<MarkStyleBuffer>,
-    cache: Res<PipelineCache>,
+    binder: Binder,
     mut ctx: RenderContext,
 ) {
     let (target, marks) = view.into_inner();
@@ -149,7 +150,7 @@ pub(crate) fn draw_marks<const LATE: bool>(
     let Ok((request, passes, lines)) = layers.get(marks.layer) else {
         return;
     };
-    let pipeline = cache.get_render_pipeline(marks.pipeline);
+    let pipeline = binder.cache.get_render_pipeline(marks.pipeline);
     let entries = bindings(lines, &styles);
     let (Some(pipeline), Some(entries)) = (pipeline, entries) else {
         return;
@@ -157,9 +158,7 @@ pub(crate) fn draw_marks<const LATE: bool>(
     if target.main_texture_format() != marks.key.format {
         return;
     }
-    let layout = cache.get_bind_group_layout(&MarkKey::layout());
-    let device = ctx.render_device();
-    let group = device.create_bind_group("comics_draw_marks", &layout, &entries);
+    let group = binder.group("comics_draw_marks", &MarkKey::layout(), &entries);
     let tiles = if marks.key.tiled { lines.tiles() } else { None };
     if marks.key.tiled != tiles.is_some() || marks.key.tiled != passes.are_tiles_complete() {
         return;

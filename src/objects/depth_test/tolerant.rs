@@ -15,9 +15,9 @@ use bevy::{
     },
     render::{
         render_resource::{
-            BindGroup, LoadOp, Operations, RenderPassDepthStencilAttachment, StoreOp, TextureUsages,
+            BindGroup, LoadOp, Operations, RenderPassDepthStencilAttachment, StoreOp,
+            TextureUsages, UniformBuffer,
         },
-        renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
         view::ExtractedView,
     },
@@ -26,13 +26,14 @@ use bevy::{
 use super::DepthTest;
 use crate::{
     gpu::texture,
-    objects::{IdRequest, line_widths::Drawing},
+    objects::{IdRequest, Pressure, line_widths::Drawing},
 };
 
 /// On a view whose ids are drawn with a tolerance in this frame.
 #[derive(Component)]
 pub(in crate::objects) struct TolerantIds {
     depth: CachedTexture,
+    pressure: UniformBuffer<Pressure>,
     /// What the pass binds instead of `ObjectIdPhase::bind_group`; `None` if there is no object.
     pub bind_group: Option<BindGroup>,
 }
@@ -61,6 +62,7 @@ type Views<'w, 's> = (
             &'static ExtractedView,
             &'static IdRequest,
             Option<&'static ViewPrepassTextures>,
+            Option<&'static mut TolerantIds>,
         ),
     >,
     Query<'w, 's, Entity, (With<TolerantIds>, Without<IdRequest>)>,
@@ -69,15 +71,15 @@ type Views<'w, 's> = (
 /// Gets the textures of this frame, and binds the depth of the prepass.
 pub(super) fn prepare_tolerant_ids(
     mut commands: Commands,
-    (views, stale): Views,
+    (mut views, stale): Views,
     test: Res<DepthTest>,
     drawing: Drawing,
-    (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
+    mut textures: ResMut<TextureCache>,
 ) {
     for view in &stale {
         commands.entity(view).remove::<TolerantIds>();
     }
-    for (entity, view, request, prepass) in &views {
+    for (entity, view, request, prepass, known) in &mut views {
         let mut target = commands.entity(entity);
         let found = prepass
             .and_then(|prepass| prepass.depth.as_ref())
@@ -94,10 +96,21 @@ pub(super) fn prepare_tolerant_ids(
             TextureUsages::RENDER_ATTACHMENT,
         );
         let view = view.retained_view_entity;
-        let widths = drawing.draws_widths(view);
+        let known = known.map(|mut known| std::mem::take(&mut known.pressure));
+        let mut pressure = known.unwrap_or_default();
+        let bound = if drawing.draws_widths(view) {
+            pressure.set(request.pressure.unwrap_or_default());
+            pressure.write_buffer(&drawing.binder.device, &drawing.queue);
+            pressure.binding()
+        } else {
+            None
+        };
+        let depth = Some(&found.default_view);
+        let bind_group = drawing.bind_group((view, request), bound, depth);
         target.insert(TolerantIds {
-            depth: textures.get(&device, descriptor),
-            bind_group: drawing.bind_group((view, request), widths, Some(&found.default_view)),
+            depth: textures.get(&drawing.binder.device, descriptor),
+            pressure,
+            bind_group,
         });
     }
 }

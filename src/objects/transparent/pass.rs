@@ -39,6 +39,7 @@ use bevy::{
 };
 
 use crate::{
+    bind_groups::Binder,
     depth::surfaces::{OwnNormals, OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     gpu,
@@ -167,13 +168,13 @@ pub(in crate::objects) fn draw_transparent_depth(
         (&QueuedDepth, &OwnSurfaces, Option<&ViewObjectIds>),
     )>,
     phases: Res<ObjectIdPhases>,
-    (ledger, cache): (Res<StageLedger>, Res<PipelineCache>),
+    (ledger, binder): (Res<StageLedger>, Binder),
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
     let ((camera, extracted, resolution, wanted), textures, own) = view.into_inner();
     let phase = phases.0.get(&extracted.retained_view_entity);
-    let recorded = Targets::new((textures, own), &cache, &ctx).and_then(|targets| {
+    let recorded = Targets::new((textures, own), &binder).and_then(|targets| {
         let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
         let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
         targets.record(&mut ctx, (world, entity, phase), viewport)
@@ -200,8 +201,7 @@ impl<'a> Targets<'a> {
     /// An error if one of them is missing in this frame, or has another number of samples.
     fn new(
         ((depth, prepass), (queued, own, ids)): Parts<'a>,
-        cache: &'a PipelineCache,
-        ctx: &RenderContext,
+        binder: &'a Binder,
     ) -> Result<Self, SkipReason> {
         let not_ready = SkipReason::PipelineNotReady;
         let samples = own.depth.texture.sample_count();
@@ -218,11 +218,11 @@ impl<'a> Targets<'a> {
         };
         let normal = match (&own.normal, &prepass.normal) {
             (Some(own), Some(prepass)) => {
-                let layout = cache.get_bind_group_layout(&copy_layout(samples));
                 let source = BindGroupEntries::single(&prepass.texture.default_view);
-                let device = ctx.render_device();
-                let group = device.create_bind_group("comics_copy_normals", &layout, &source);
-                let pipeline = cache.get_render_pipeline(own.copy).ok_or(not_ready)?;
+                let group = binder.group("comics_copy_normals", &copy_layout(samples), &source);
+                let pipeline = (binder.cache)
+                    .get_render_pipeline(own.copy)
+                    .ok_or(not_ready)?;
                 Some((&own.texture.default_view, pipeline, group))
             }
             (Some(_), None) => return Err(SkipReason::NoNormalPrepass),
