@@ -44,8 +44,8 @@ use bevy::{
 pub use cracks::ViewCracks;
 pub use modifiers::{LineFade, LineLayers, LineModifiers, LineSimplification, Sheet};
 pub use settings::{
-    Creases, LineBoil, LineColor, LineEdge, LineFog, LineResponse, LineWeight, MapJumps,
-    ObjectEdges, Outlines, Silhouettes,
+    CreaseSource, Creases, LineBoil, LineColor, LineEdge, LineFog, LineResponse, LineWeight,
+    MapJumps, ObjectEdges, Outlines, Silhouettes,
 };
 
 pub(crate) use key::{ink_entry, owners_entry, range_entry};

@@ -1,7 +1,10 @@
 //! Creases at the borders of the sections of meshes.
 
 use bevy::mesh::MeshBuilder;
-use bevy_comics::objects::{ATTRIBUTE_MESH_SECTION, OutlineKinds};
+use bevy_comics::{
+    lines::CreaseSource,
+    objects::{ATTRIBUTE_MESH_SECTION, OutlineKinds},
+};
 
 use crate::{
     ids::skinned_and_morphed,
@@ -35,7 +38,8 @@ pub fn wait(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    panic!("the sections did not arrive");
+    let found = small.object_ids().map(|ids| kinds(&ids));
+    panic!("the sections did not arrive: {found:?}");
 }
 
 /// How many sections are visible.
@@ -202,6 +206,16 @@ fn pictures_with_sections_match_the_reference() {
     let mut objects = small.world().query_filtered::<Entity, With<Object>>();
     let objects: Vec<Entity> = objects.iter(small.world()).collect();
     assert_divided_as_reference(&mut small, &objects);
+    for object in objects {
+        small.on(object).remove::<MeshSections>();
+    }
+    small.style(&outlined(everywhere()));
+    wait(&mut small, |ids| {
+        ids.pixels
+            .iter()
+            .any(|[_, m]| (1..64).contains(&section(*m)))
+    });
+    assert_pass_matches_the_reference(&mut small, &outlined(everywhere()), None, "all meshes");
 }
 
 fn assert_divided_as_reference(small: &mut Small, objects: &[Entity]) {
@@ -212,4 +226,209 @@ fn assert_divided_as_reference(small: &mut Small, objects: &[Entity]) {
     let what = format!("{} objects", objects.len());
     assert_pass_matches_the_reference(small, &outlined(creases()), None, &what);
     assert_eq!(small.errors(), 0);
+}
+
+const FACADE: UVec2 = UVec2::new(384, 256);
+/// Half of the size of a frame in a wall, in metres.
+const FRAME: Vec2 = Vec2::new(0.6, 0.8);
+
+/// Creases at the edges of all meshes.
+fn everywhere() -> Outlines {
+    let creases = Creases {
+        source: CreaseSource::Both,
+        ..default()
+    };
+    Outlines {
+        silhouettes: None,
+        creases: Some(creases),
+        objects: None,
+        width: 1.0,
+        ..default()
+    }
+}
+
+/// A wall with a frame that stands proud of it, as one mesh.
+fn facade(proud: f32) -> Mesh {
+    let mut wall = Mesh::from(Cuboid::new(4.0, 3.0, 0.4)).translated_by(Vec3::NEG_Z * 0.2);
+    let frame = Cuboid::new(2.0 * FRAME.x, 2.0 * FRAME.y, 2.0 * proud);
+    wall.merge(&Mesh::from(frame)).expect("the same attributes");
+    wall
+}
+
+/// Where a point is in the picture of a view that is 90 degrees high.
+fn on_picture(p: Vec3) -> Vec2 {
+    let half = 0.5 * FACADE.as_vec2();
+    half + Vec2::new(p.x, -p.y) / -p.z * half.y
+}
+
+fn distance_to(p: Vec2, [a, b]: [Vec2; 2]) -> f32 {
+    let along = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
+    p.distance(a.lerp(b, along))
+}
+
+/// How much of the border of the frame's front has ink, and the part of all pixels that have ink away
+/// from all edges. A pixel with a line along a border has its middle up to 1.2 pixels from it: it lies
+/// up to 0.7 pixels from a place inside, and the line up to half a pixel beside the border.
+fn compare(picture: &image::RgbaImage, at: &Transform, proud: f32) -> [f64; 2] {
+    let corners = |half: Vec2, z: f32| {
+        let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        signs.map(|sign| on_picture(*at * (half * Vec2::from(sign)).extend(z)))
+    };
+    let sides = |c: [Vec2; 4]| [0, 1, 2, 3].map(|i| [c[i], c[(i + 1) % 4]]);
+    let edges = |[front, back]: [[Vec2; 4]; 2]| {
+        let between = [0, 1, 2, 3].map(|i| [front[i], back[i]]);
+        [sides(front), sides(back), between].concat()
+    };
+    let frame = [proud, 0.0].map(|z| corners(FRAME, z));
+    let border = sides(frame[0]);
+    let wall = [0.0, -0.4].map(|z| corners(Vec2::new(2.0, 1.5), z));
+    let edges = [edges(frame), edges(wall)].concat();
+    let inked = (0..FACADE.y).flat_map(|y| (0..FACADE.x).map(move |x| (x, y)));
+    let inked: Vec<(Vec2, f64)> = inked
+        .map(|(x, y)| {
+            let place = Vec2::new(x as f32, y as f32) + 0.5;
+            (place, 1.0 - linear(picture, x, y)[0])
+        })
+        .filter(|(_, ink)| *ink > 0.05)
+        .collect();
+    let away = |(p, ink): &&(Vec2, f64)| {
+        *ink > 0.4 && edges.iter().all(|edge| distance_to(*p, *edge) > 1.5)
+    };
+    let wrong = inked.iter().filter(away).count() as f64;
+    let (mut whole, mut all) = (0, 0);
+    for [a, b] in border {
+        let steps = (2.0 * a.distance(b)) as usize + 1;
+        for step in 0..=steps {
+            let p = a.lerp(b, step as f32 / steps as f32);
+            let near = inked.iter().filter(|(at, _)| at.distance(p) <= 1.2);
+            whole += usize::from(near.map(|(_, ink)| ink).sum::<f64>() > 0.5);
+            all += 1;
+        }
+    }
+    let pixels = f64::from(FACADE.x * FACADE.y);
+    [
+        f64::from(whole as u32) / f64::from(all as u32),
+        wrong / pixels,
+    ]
+}
+
+/// Frames that stand 1 to 8 cm proud of a wall, have whole borders, seen as in a picture of 720 rows and
+/// 45 degrees from 20 to 60 m.
+fn check_frames(yaws: impl Iterator<Item = f32> + Clone) {
+    let lines = Outlines {
+        silhouettes: Some(Silhouettes::default()),
+        ..everywhere()
+    };
+    let mut small = Small::new(FACADE, Msaa::Off);
+    let (mut found, mut count, mut most_wrong) = (0.0, 0.0, 0.0f64);
+    let mut by_normals = 0.0;
+    for proud in [0.01, 0.05, 0.08] {
+        small.empty_view(Msaa::Off, Color::WHITE);
+        let wall = small.put(facade(proud), unlit(Color::WHITE), Transform::default());
+        small.on(wall).insert(Transform::from_xyz(0.0, 0.0, -12.0));
+        small.style(&outlined(lines));
+        wait(&mut small, some_has_sections);
+        for distance in [3.0, 6.0, 9.0] {
+            for yaw in yaws.clone() {
+                let turned = Quat::from_rotation_y(yaw.to_radians());
+                let at = Transform::from_xyz(0.3, 0.2, -distance).with_rotation(turned);
+                small.on(wall).insert(at);
+                small.style(&outlined(lines));
+                small.headless.step(2);
+                let [whole, wrong] = compare(&small.picture(), &at, proud);
+                assert!(whole > 0.9, "{proud} m, {distance} m, {yaw}: {whole}");
+                (found, count) = (found + whole, count + 1.0);
+                most_wrong = most_wrong.max(wrong);
+                if distance == 6.0 {
+                    let normals = Outlines {
+                        width: 1.0,
+                        silhouettes: Some(Silhouettes::default()),
+                        ..creases()
+                    };
+                    // Without sections.
+                    small.on(wall).insert(MeshSections::NONE);
+                    small.style(&outlined(normals));
+                    small.settle();
+                    by_normals += compare(&small.picture(), &at, proud)[0];
+                    small.on(wall).remove::<MeshSections>();
+                    small.style(&outlined(lines));
+                    wait(&mut small, some_has_sections);
+                }
+            }
+        }
+    }
+    let found = found / count;
+    let by_normals = 3.0 * by_normals / count;
+    println!("found {found}, by normals {by_normals}, away at most {most_wrong}");
+    assert!(found >= 0.995, "{found}");
+    assert!(most_wrong <= 3e-4, "{most_wrong}");
+    assert!(by_normals < 0.7, "the test could not fail: {by_normals}");
+}
+
+#[test]
+fn frames_of_walls_have_whole_borders() {
+    check_frames([-65.0, -20.0, 0.0, 40.0].into_iter());
+}
+
+#[test]
+#[ignore = "long: 45 yaws"]
+fn frames_of_walls_have_whole_borders_from_everywhere() {
+    check_frames((0..45).map(|i| -70.0 + 140.0 * i as f32 / 44.0));
+}
+
+/// The triangles of a mesh whose middles are on one side of the ground.
+fn half_of(mesh: &Mesh, above: bool) -> Mesh {
+    let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION);
+    let positions = positions
+        .and_then(|values| values.as_float3())
+        .expect("positions");
+    let indices: Vec<u32> = mesh
+        .indices()
+        .expect("indices")
+        .iter()
+        .map(|i| i as u32)
+        .collect();
+    let kept = indices.chunks(3).filter(|t| {
+        let height: f32 = t.iter().map(|i| positions[*i as usize][1]).sum();
+        (height > 0.0) == above
+    });
+    let kept = kept.flatten().copied().collect();
+    mesh.clone().with_inserted_indices(Indices::U32(kept))
+}
+
+/// Surfaces that go on where a mesh has no common edge, and edges that are shaded smoothly, have no
+/// lines: floors of tiles, halves of a ball, and posts.
+#[test]
+fn surfaces_that_go_on_have_no_lines() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    let tile = |x: f32, z: f32| {
+        let tile = Mesh::from(Plane3d::default().mesh().size(2.0, 1.0));
+        tile.translated_by(Vec3::new(x, -2.0, z))
+    };
+    let mut floor = tile(0.0, -3.5);
+    for row in 0..40 {
+        for column in -12..=12 {
+            let x = 2.0 * column as f32 + 0.7 * (row % 3) as f32;
+            let tile = tile(x, -2.5 - row as f32);
+            floor.merge(&tile).expect("the same attributes");
+        }
+    }
+    let mut ball = half_of(&Sphere::new(2.0).mesh().uv(32, 18), true);
+    let below = half_of(&Sphere::new(2.0).mesh().uv(40, 22), false);
+    ball.merge(&below).expect("the same attributes");
+    let tilted = Quat::from_rotation_z(0.4) * Quat::from_rotation_x(0.2);
+    let away = Transform::from_xyz(0.0, 0.0, -6.0).with_rotation(tilted);
+    let post = Cylinder::new(0.8, 40.0).mesh().resolution(6).build();
+    for (mesh, at, least) in [
+        (floor, Transform::default(), 8),
+        (ball, away, 2),
+        (post, away, 1),
+    ] {
+        small.empty_view(Msaa::Off, Color::WHITE);
+        small.put(mesh, unlit(Color::WHITE), at);
+        small.style(&outlined(everywhere()));
+        wait(&mut small, |ids| kinds(ids) >= least);
+        let drawn = ink(&mut small, everywhere());
+        assert!(drawn < 0.05, "{least} sections: {drawn}");
+    }
 }

@@ -150,6 +150,20 @@ fn step_excess(
     return abs(step) - max(vec4(0.0), max(near_slope, far_slope));
 }
 
+// By how much the step between two neighbours departs from the slopes beside it, beyond four times
+// what these bend: 0 or less on planes and curves, positive where one surface ends in front of
+// another one, or bends.
+fn departure(
+    before_2: vec4<f32>, before: vec4<f32>, here: vec4<f32>,
+    there: vec4<f32>, beyond: vec4<f32>, beyond_2: vec4<f32>,
+) -> vec4<f32> {
+    let step = here - there;
+    let near = before - here;
+    let far = there - beyond;
+    let bends = min(abs(before_2 - before - near), abs(beyond - beyond_2 - far));
+    return min(abs(step - near), abs(step - far)) - 4.0 * bends;
+}
+
 // The step on the other side of one beside a larger step, as a fraction of it, from which
 // the surface is curved: 0.41 and more next to the rim of a cylinder, less next to that of a
 // mesh with flat sides, and about 0 between flat layers.

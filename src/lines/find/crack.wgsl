@@ -142,23 +142,30 @@ fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, k
 #endif
 
 #ifdef SECTIONS
-// Sections above this one are those of meshes in groups; the last one has no creases.
+// Sections up to this one were found, and pixels must confirm their borders: so must those of
+// meshes in groups, above the second one. The last one has no creases.
+const LAST_FOUND: u32 = 63u;
 const LAST_ALONE: u32 = 127u;
 const SILENT: u32 = 255u;
 // The fold of 10 degrees.
 const BENT: f32 = 0.0304;
+// A departure from the slopes beside, as a fraction of what a jump is a fraction of.
+const STEP: f32 = 2e-5;
 
 fn sections_of(marks: vec4<u32>) -> vec4<u32> {
     return marks >> vec4(ABOVE_SLOT);
 }
 
-// Whether two sections of an object meet. The meshes of a group are not told apart: between
-// them, the surface must also bend.
-fn section_borders(at: Borders) -> vec4<bool> {
+// Whether two sections of an object meet. Unless one of them was asked for, the surface must also
+// bend there, or have a step or a bend in depth.
+fn section_borders(at: Borders, reference: vec4<f32>) -> vec4<bool> {
     let here = sections_of(at.marks_here);
     let there = sections_of(at.marks_there);
     let differ = (here != there) & (here != vec4(0u)) & (there != vec4(0u));
-    let ends = (here <= vec4(LAST_ALONE)) | (at.folds > vec4(BENT));
+    let asked_here = (here > vec4(LAST_FOUND)) & (here <= vec4(LAST_ALONE));
+    let asked_there = (there > vec4(LAST_FOUND)) & (there <= vec4(LAST_ALONE));
+    let seen = (at.folds > vec4(BENT)) | (at.departs > STEP * reference);
+    let ends = asked_here | asked_there | seen;
     return differ & ends & (at.object_here == at.object_there);
 }
 
@@ -174,19 +181,22 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     var response = fold_response(at.folds * response_factors(at), s.crease_k);
     var ridge = at.ridge;
     var rim = at.rim;
+    var free = found.kinds == vec4(0u);
 #ifdef SECTIONS
-    let border = section_borders(at);
+    let border = section_borders(at, reference);
     response = select(response, vec4(1.0), border);
     ridge = (ridge | border) & !are_silent(at);
     rim &= !are_silent(at);
+    // A border is a line where the step is too low for one.
+    free |= border & !found.certain;
 #endif
     let ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), response);
     let drawn_here = has(here, CREASE);
     let drawn_there = has(there, CREASE);
     let joined = at.excess < s.jump * reference;
-    let drawn = (drawn_here | drawn_there) & (byte(ink) > vec4(0u)) & (found.kinds == vec4(0u));
+    let drawn = (drawn_here | drawn_there) & (byte(ink) > vec4(0u)) & free;
     let crease = (ridge | rim) & joined & drawn;
-    found.kinds |= select(vec4(0u), vec4(CREASE), crease);
+    found.kinds = select(found.kinds, vec4(CREASE), crease);
     found.ink = select(found.ink, ink, crease);
     // At a rim a crease only continues another.
     found.certain |= crease & ridge & (response >= vec4(s.crease_limit));

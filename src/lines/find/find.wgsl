@@ -4,7 +4,9 @@
 
 #import bevy_comics::depth::view::{is_drawn_sky, set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
-#import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
+#import bevy_comics::lines::edge::{
+    departure, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+}
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
 #ifdef NORMALS
@@ -69,6 +71,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let beyond_2 = vec2(depth_at(origin, high_3.x, p.y), depth_at(origin, p.x, high_3.y)).xyxy;
     at.excess = step_excess(before_2, before, at.here, at.there, beyond, beyond_2);
     at.outdone = is_outdone(before, at.here, at.there, beyond);
+#ifdef SECTIONS
+    at.departs = departure(before_2, before, at.here, at.there, beyond, beyond_2);
+#endif
 #ifdef NORMALS
     let n = normal_at(origin + p);
     let e = normal_at(origin + vec2(high.x, p.y));

@@ -5,7 +5,9 @@
 // ids, a walk down 32 rows loads 6 texels a pixel, and one down 8 rows 8.5, instead of 21.
 
 #import bevy_comics::depth::view::{is_drawn_sky, texel_depth}
-#import bevy_comics::lines::edge::{facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
+#import bevy_comics::lines::edge::{
+    departure, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+}
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -59,6 +61,8 @@ struct Borders {
     there: vec4<f32>,
     excess: vec4<f32>,
     outdone: vec4<bool>,
+    // SECTIONS: see departure.
+    departs: vec4<f32>,
     folds: vec4<f32>,
     ridge: vec4<bool>,
     rim: vec4<bool>,
@@ -104,6 +108,15 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
     );
 #ifndef BOUNDS
+#ifdef SECTIONS
+    (*found).east.departs = departure(
+        vec4(depth_at(c, c.west.x, y), west, depth.xy), (*found).before, depth,
+        (*found).east.there, vec4(depth.zw, e, f), vec4(depth.w, e, f, depth_at(c, c.east.z, y)),
+    );
+    (*found).south.departs = departure(
+        (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
+    );
+#endif
     (*found).east.outdone = is_outdone((*found).before, depth, (*found).east.there, vec4(depth.zw, e, f));
     (*found).south.outdone = is_outdone((*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0]);
 #endif

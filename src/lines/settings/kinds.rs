@@ -101,6 +101,8 @@ pub struct Creases {
     /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub equations: Equations,
+    /// Where creases are found besides. Default: [`CreaseSource::Normals`].
+    pub source: CreaseSource,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
     /// which the response is 1. Range 3 to 180, default 40. Faithful: `k_p` of
@@ -125,9 +127,33 @@ pub struct Creases {
     pub opacity: f32,
 }
 
+/// Where creases are found.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+pub enum CreaseSource {
+    /// In the normals of pixels, and at the borders of the meshes with
+    /// [`MeshSections`](crate::objects::MeshSections).
+    #[default]
+    Normals,
+    /// In the normals of pixels, and at the edges of all meshes, which are exact: lines along faces
+    /// that are thinner than a pixel, such as those of window frames, have no gaps. If one camera
+    /// asks for it, the creases of all cameras have these edges.
+    ///
+    /// Every mesh without [`MeshSections`](crate::objects::MeshSections) is divided once, in a
+    /// background task, where two triangles bend by 50 degrees and the normals of their common
+    /// vertices differ by 15 degrees. Such an edge is a crease where the pixels confirm it: they
+    /// bend by 10 degrees, or their depths have a step. Skinned and morphed meshes are left out,
+    /// and those that are mostly small parts, such as grass.
+    ///
+    /// Faithful creases do not use it. The device must support `PRIMITIVE_INDEX`, which browsers do
+    /// not; without it, this is [`Normals`](Self::Normals).
+    Both,
+}
+
 impl Creases {
     pub(crate) const DEFAULT: Self = Self {
         equations: Equations::Corrected,
+        source: CreaseSource::Normals,
         angle: 40.0,
         edge_limit: 0.5,
         softness: 0.5,
@@ -266,12 +292,13 @@ impl Blend for Creases {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        self.equations == other.equations
+        (self.equations, self.source) == (other.equations, other.source)
     }
 
     fn mixed(self, other: Self, t: f32) -> Self {
         Self {
             equations: self.equations,
+            source: self.source,
             angle: self.angle.lerp(other.angle, t),
             edge_limit: self.edge_limit.lerp(other.edge_limit, t),
             softness: self.softness.lerp(other.softness, t),

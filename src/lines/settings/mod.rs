@@ -11,7 +11,7 @@ mod weight;
 pub use boil::LineBoil;
 pub use color::LineColor;
 pub use fog::LineFog;
-pub use kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes};
+pub use kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes};
 pub use map_jumps::MapJumps;
 pub use outlines::Outlines;
 pub use weight::LineWeight;

@@ -12,7 +12,7 @@ use super::{
     boil::LineBoil,
     color::LineColor,
     fog::LineFog,
-    kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
+    kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
 };
 use crate::{
@@ -305,6 +305,12 @@ impl Outlines {
     pub(crate) fn has_measured_creases(&self) -> bool {
         self.creases
             .is_some_and(|c| c.equations == Equations::Corrected)
+    }
+
+    /// Whether creases are found at the edges of all meshes.
+    pub(crate) fn divides_meshes(&self) -> bool {
+        self.has_measured_creases()
+            && (self.creases).is_some_and(|creases| creases.source == CreaseSource::Both)
     }
 
     /// Whether any kind has the faithful equations, whose ink is not found along cracks.

@@ -6,18 +6,28 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
 };
 
-use super::ATTRIBUTE_MESH_SECTION;
+use super::{ATTRIBUTE_MESH_SECTION, Origin};
 
 /// A section whose borders and bends have no creases.
 pub(super) const SILENT: u8 = 255;
 /// Numbers of sections, from 1 on. Neighbours have different numbers.
 pub(super) const NUMBERS: u8 = 127;
+/// Numbers of sections that were [found](Origin::Found), from 1 on: pixels must confirm their
+/// borders. Those that were asked for have the others.
+const FOUND: u8 = 63;
+/// Normals at an edge that differ by less are smooth, in degrees.
+const SMOOTH: f32 = 15.0;
+/// Most sections that cover half of a mesh's area. More are grass, leaves, or rubble.
+const MOST: usize = 1000;
+/// Most sections whose boxes are compared.
+const MOST_BOXES: usize = 4000;
 /// Vertices that are nearer to each other than this fraction of the mesh's diagonal are one.
 const WELD: f32 = 1e-5;
 
 /// What dividing reads of a mesh.
 pub(super) struct Surface {
     positions: Vec<Vec3>,
+    normals: Option<Vec<Vec3>>,
     triangles: Vec<[u32; 3]>,
     /// The author's sections, by vertex.
     own: Option<Vec<u32>>,
@@ -30,6 +40,12 @@ impl Surface {
             mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION)?
         else {
             return Ok(None);
+        };
+        let normals = match mesh.try_attribute_option(Mesh::ATTRIBUTE_NORMAL)? {
+            Some(VertexAttributeValues::Float32x3(n)) if n.len() == positions.len() => {
+                Some(n.iter().copied().map(Vec3::from).collect())
+            }
+            _ => None,
         };
         let own = match mesh.try_attribute_option(ATTRIBUTE_MESH_SECTION)? {
             Some(VertexAttributeValues::Uint32(own)) => Some(own.clone()),
@@ -70,14 +86,15 @@ impl Surface {
             .collect();
         Ok(Some(Self {
             positions: positions.iter().copied().map(Vec3::from).collect(),
+            normals,
             triangles,
             own,
         }))
     }
 
-    /// The section of each triangle: 1 to [`NUMBERS`], or [`SILENT`]. `angle`: from which
-    /// two triangles that share an edge are two sections, in degrees.
-    pub fn divide(&self, angle: f32) -> Vec<u8> {
+    /// The section of each triangle: 1 to [`NUMBERS`], or [`SILENT`]; empty if there are too many.
+    /// `angle`: from which two triangles that share an edge are two sections, in degrees.
+    pub fn divide(&self, angle: f32, origin: Origin) -> Vec<u8> {
         if let Some(own) = &self.own {
             let of = |t: &[u32; 3]| own.get(t[0] as usize).copied().unwrap_or(0);
             return self.triangles.iter().map(|t| own_number(of(t))).collect();
@@ -93,13 +110,97 @@ impl Surface {
             // A triangle without an area has no normal; it separates nothing.
             let flat = n == Vec3::ZERO || m == Vec3::ZERO;
             let cosine = if turned { -n.dot(m) } else { n.dot(m) };
-            if flat || cosine > least {
+            if flat
+                || cosine > least
+                || (origin == Origin::Found && self.is_smooth(&corners, [a, b]))
+            {
                 parts.join(a.triangle, b.triangle);
             } else {
                 apart.push([a.triangle, b.triangle]);
             }
         }
-        number(&mut parts, &apart)
+        let roots: Vec<usize> = (0..self.triangles.len()).map(|i| parts.root(i)).collect();
+        match origin {
+            Origin::Asked => number(&roots, &apart, &[], FOUND..NUMBERS),
+            Origin::Found if self.is_crowd(&roots) => Vec::new(),
+            Origin::Found => number(&roots, &apart, &self.touching(&roots), 0..FOUND),
+        }
+    }
+
+    /// Whether the normals of two triangles agree at both ends of their common edge.
+    fn is_smooth(&self, corners: &[[u32; 3]], [a, b]: [Side; 2]) -> bool {
+        let Some(normals) = &self.normals else {
+            return false;
+        };
+        let least = SMOOTH.to_radians().cos();
+        let [at, bt] = [a, b].map(|side| (&corners[side.triangle], &self.triangles[side.triangle]));
+        let normal = |corner: u32, (welded, own): (&[u32; 3], &[u32; 3])| {
+            let i = welded.iter().position(|other| *other == corner)?;
+            Some(normals[own[i] as usize].normalize_or_zero())
+        };
+        at.0.iter()
+            .filter(|corner| bt.0.contains(corner))
+            .all(|corner| {
+                let found = normal(*corner, at).zip(normal(*corner, bt));
+                found.is_some_and(|(n, m)| n.dot(m) > least)
+            })
+    }
+
+    /// Whether half of the area is divided into more than [`MOST`] sections.
+    fn is_crowd(&self, roots: &[usize]) -> bool {
+        let mut areas: HashMap<usize, f64> = HashMap::default();
+        for (t, root) in self.triangles.iter().zip(roots) {
+            let [a, b, c] = t.map(|i| self.positions[i as usize].as_dvec3());
+            let area = (b - a).cross(c - a).length();
+            if area.is_finite() {
+                *areas.entry(*root).or_default() += area;
+            }
+        }
+        let mut areas: Vec<f64> = areas.into_values().collect();
+        areas.sort_by(|a, b| b.total_cmp(a));
+        let half = 0.5 * areas.iter().sum::<f64>();
+        areas.iter().take(MOST).sum::<f64>() < half
+    }
+
+    /// Pairs of triangles of sections whose boxes touch: such sections may meet on the screen
+    /// although they have no common edge.
+    fn touching(&self, roots: &[usize]) -> Vec<[usize; 2]> {
+        let mut boxes: HashMap<usize, [Vec3; 2]> = HashMap::default();
+        for (t, root) in self.triangles.iter().zip(roots) {
+            let known = boxes
+                .entry(*root)
+                .or_insert([Vec3::INFINITY, Vec3::NEG_INFINITY]);
+            for p in t.map(|i| self.positions[i as usize]) {
+                *known = [known[0].min(p), known[1].max(p)];
+            }
+        }
+        if boxes.len() > MOST_BOXES {
+            return Vec::new();
+        }
+        let all = boxes
+            .values()
+            .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |all, b| {
+                [all[0].min(b[0]), all[1].max(b[1])]
+            });
+        let near = 1e-3 * (all[1] - all[0]).length();
+        let mut boxes: Vec<(usize, [Vec3; 2])> = boxes.into_iter().collect();
+        boxes.sort_by(|a, b| a.1[0].x.total_cmp(&b.1[0].x).then(a.0.cmp(&b.0)));
+        let mut pairs = Vec::new();
+        for (i, (root, [low, high])) in boxes.iter().enumerate() {
+            let right = boxes[i + 1..]
+                .iter()
+                .take_while(|(_, b)| b[0].x <= high.x + near);
+            let meets = |b: &[Vec3; 2]| {
+                let apart = (b[0] - *high).max(*low - b[1]);
+                apart.max_element() <= near
+            };
+            pairs.extend(
+                right
+                    .filter(|(_, b)| meets(b))
+                    .map(|(other, _)| [*root, *other]),
+            );
+        }
+        pairs
     }
 
     /// The unit normal of a triangle; 0 if it has no area.
@@ -156,7 +257,7 @@ impl Surface {
 fn own_number(own: u32) -> u8 {
     match own {
         0 => SILENT,
-        own => ((own - 1) % u32::from(NUMBERS)) as u8 + 1,
+        own => ((own - 1) % u32::from(NUMBERS - FOUND)) as u8 + FOUND + 1,
     }
 }
 
@@ -216,29 +317,44 @@ impl Parts {
     }
 }
 
-/// Gives each part a number that its neighbours do not have, if there is one.
-fn number(parts: &mut Parts, apart: &[[usize; 2]]) -> Vec<u8> {
-    let roots: Vec<usize> = (0..parts.0.len()).map(|i| parts.root(i)).collect();
-    let mut beside: HashMap<usize, HashSet<usize>> = HashMap::default();
-    for [a, b] in apart {
-        let [a, b] = [roots[*a], roots[*b]];
-        if a != b {
-            beside.entry(a).or_default().insert(b);
-            beside.entry(b).or_default().insert(a);
+/// Gives each part a number of a range, which is 1 less than the number, that its neighbours do not
+/// have, if there is one. `roots`: the first triangle of the part of each triangle; `apart`: pairs
+/// of neighbours; `near`: pairs that should differ if that is possible too.
+fn number(
+    roots: &[usize],
+    apart: &[[usize; 2]],
+    near: &[[usize; 2]],
+    range: std::ops::Range<u8>,
+) -> Vec<u8> {
+    let beside = |pairs: &[[usize; 2]]| {
+        let mut beside: HashMap<usize, HashSet<usize>> = HashMap::default();
+        for [a, b] in pairs {
+            let [a, b] = [roots[*a], roots[*b]];
+            if a != b {
+                beside.entry(a).or_default().insert(b);
+                beside.entry(b).or_default().insert(a);
+            }
         }
-    }
+        beside
+    };
+    let (apart, near) = (beside(apart), beside(near));
+    let count = range.end - range.start;
     let mut numbers = vec![0u8; roots.len()];
     let mut next = 0u8;
     for (triangle, root) in roots.iter().enumerate() {
         if triangle == *root {
-            let taken: HashSet<u8> = (beside.get(root).into_iter().flatten())
-                .map(|other| numbers[*other])
-                .collect();
+            let taken = |beside: &HashMap<usize, HashSet<usize>>| -> HashSet<u8> {
+                let others = beside.get(root).into_iter().flatten();
+                others.map(|other| numbers[*other]).collect()
+            };
+            let (apart, near) = (taken(&apart), taken(&near));
             // Numbers in turn: parts that only touch on the screen rarely have the same.
-            let mut candidates = (0..NUMBERS).map(|i| (next + i) % NUMBERS + 1);
-            let free = candidates.find(|n| !taken.contains(n)).unwrap_or(1);
+            let candidates = || (0..count).map(|i| range.start + (next + i) % count + 1);
+            let free = candidates().find(|n| !apart.contains(n) && !near.contains(n));
+            let free = free.or_else(|| candidates().find(|n| !apart.contains(n)));
+            let free = free.unwrap_or(range.start + 1);
             numbers[triangle] = free;
-            next = free % NUMBERS;
+            next = (free - range.start) % count;
         }
         // The root of a part is its first triangle.
         numbers[triangle] = numbers[*root];

@@ -12,14 +12,17 @@ use bevy::{
         entity::{Entity, EntityHashSet},
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::Changed,
+        query::{Changed, Has, With},
         reflect::ReflectComponent,
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
         system::{Query, Res, ResMut, SystemParam},
     },
     log::{warn, warn_once},
-    mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexFormat},
+    mesh::{
+        Mesh, Mesh3d, MeshVertexAttribute, VertexFormat, morph::MeshMorphWeights,
+        skinning::SkinnedMesh,
+    },
     platform::collections::{HashMap, HashSet},
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{RenderApp, renderer::RenderDevice, settings::WgpuFeatures},
@@ -70,17 +73,20 @@ pub(crate) use table::{
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct MeshSections {
     /// Angle between the normals of two triangles from which they belong to two sections, in
-    /// degrees. Range 10 to 120, default 50.
-    #[reflect(@FieldRange::linear(10.0, 120.0).unit("°"))]
+    /// degrees. Range 10 to 180, default 50. At 180 the mesh has no sections.
+    #[reflect(@FieldRange::linear(10.0, 180.0).unit("°"))]
     pub angle: f32,
 }
 
 impl MeshSections {
+    /// No sections, also if a camera has [`CreaseSource::Both`](crate::lines::CreaseSource::Both).
+    pub const NONE: Self = Self { angle: 180.0 };
+
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
-            angle: clamp_or_default(self.angle, 50.0, 10.0, 120.0),
+            angle: clamp_or_default(self.angle, 50.0, 10.0, 180.0),
         }
     }
 }
@@ -92,23 +98,35 @@ impl Default for MeshSections {
 }
 
 /// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
-/// vertex of a triangle decides. Two numbers that differ by a multiple of 127 are the same
+/// vertex of a triangle decides. Two numbers that differ by a multiple of 64 are the same
 /// section; at a triangle of section 0 there are no creases at all. The loader of a glTF file
 /// must be told about attributes of its own (`GltfPlugin::add_custom_vertex_attribute`).
 pub const ATTRIBUTE_MESH_SECTION: MeshVertexAttribute =
     MeshVertexAttribute::new("MeshSection", 0x636f_6d69_6373, VertexFormat::Uint32);
 
-/// A mesh, and the angle at which it is divided, in thousandths of a degree.
+/// A mesh, and how it is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SectionKey {
     mesh: AssetId<Mesh>,
+    /// In thousandths of a degree.
     angle: u32,
+    origin: Origin,
+}
+
+/// Why a mesh is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Origin {
+    /// It has [`MeshSections`].
+    Asked,
+    /// A camera asks for the edges of all meshes: rules keep them quiet.
+    Found,
 }
 
 impl SectionKey {
-    fn new(mesh: &Mesh3d, sections: MeshSections) -> Self {
+    fn new(mesh: &Mesh3d, sections: MeshSections, origin: Origin) -> Self {
         Self {
             mesh: mesh.0.id(),
+            origin,
             angle: (sections.angle * 1000.0).round() as u32,
         }
     }
@@ -132,6 +150,10 @@ pub(super) struct SectionTasks {
     supported: bool,
 }
 
+/// Whether a camera asks for the edges of all meshes.
+#[derive(Resource, Default, PartialEq)]
+pub(crate) struct AllMeshes(pub bool);
+
 /// The sections that a mesh entity has: their key, and if it shares its id with other
 /// meshes, by how much its numbers are shifted.
 pub(crate) type EntitySections = (SectionKey, Option<u8>);
@@ -140,7 +162,9 @@ pub(crate) type EntitySections = (SectionKey, Option<u8>);
 #[derive(SystemParam)]
 pub(super) struct Divided<'w, 's> {
     sections: Inherited<'w, 's, MeshSections>,
-    meshes: Query<'w, 's, &'static Mesh3d>,
+    meshes: Query<'w, 's, (&'static Mesh3d, Has<SkinnedMesh>, Has<MeshMorphWeights>)>,
+    all: Res<'w, AllMeshes>,
+    every_mesh: Query<'w, 's, Entity, With<Mesh3d>>,
     groups: Res<'w, ObjectGroups>,
     other_mesh: Query<'w, 's, Entity, Changed<Mesh3d>>,
     removed: RemovedComponents<'w, 's, Mesh3d>,
@@ -157,7 +181,10 @@ impl Divided<'_, '_> {
     fn update(&mut self, used: bool) -> EntityHashSet {
         let mut changed = self.sections.update();
         let without_mesh = self.removed.read();
-        if used || !changed.is_empty() {
+        if self.all.is_changed() {
+            changed.extend(&self.every_mesh);
+        }
+        if used || self.all.0 || !changed.is_empty() {
             changed.extend(self.other_mesh.iter().chain(without_mesh));
             if self.groups.is_changed() {
                 changed.extend(self.groups.changed());
@@ -167,12 +194,19 @@ impl Divided<'_, '_> {
     }
 
     fn of(&self, entity: Entity) -> Option<EntitySections> {
-        let (_, sections) = self.sections.of(entity)?;
-        let mesh = self.meshes.get(entity).ok()?;
+        let (mesh, skinned, morphed) = self.meshes.get(entity).ok()?;
+        let (sections, origin) = match self.sections.of(entity) {
+            Some((_, asked)) => (asked.sanitized(), Origin::Asked),
+            None if self.all.0 && !skinned && !morphed => (MeshSections::default(), Origin::Found),
+            None => return None,
+        };
+        if sections == MeshSections::NONE {
+            return None;
+        }
         let shared = self.groups.is_shared(entity);
         // Two meshes of a group rarely have the same numbers.
         let shift = shared.then(|| (entity.index_u32() % u32::from(divide::NUMBERS)) as u8);
-        Some((SectionKey::new(mesh, sections.sanitized()), shift))
+        Some((SectionKey::new(mesh, sections, origin), shift))
     }
 }
 
@@ -191,9 +225,12 @@ pub(super) fn divide_meshes(
         return;
     }
     if !tasks.supported {
-        warn_once!(
-            "`MeshSections` does nothing: the device does not support the feature PRIMITIVE_INDEX"
-        );
+        if changed.iter().any(|entity| divided.of(*entity).is_some()) {
+            warn_once!(
+                "`MeshSections` and `CreaseSource::Both` do nothing: the device does not support \
+                 the feature PRIMITIVE_INDEX"
+            );
+        }
         return;
     }
     tables.begin();
@@ -240,8 +277,8 @@ impl SectionTasks {
             };
             match Surface::new(mesh) {
                 Ok(Some(surface)) => {
-                    let angle = key.angle();
-                    let divide = async move { surface.divide(angle) };
+                    let (angle, origin) = (key.angle(), key.origin);
+                    let divide = async move { surface.divide(angle, origin) };
                     running.insert(*key, AsyncComputeTaskPool::get().spawn(divide));
                 }
                 // No triangles: no sections.
@@ -267,7 +304,13 @@ impl SectionTasks {
         self.running.retain(|key, task| {
             let result = block_on(future::poll_once(task));
             let is_running = result.is_none();
-            done.extend(result.map(|numbers| (*key, numbers)));
+            match result {
+                // Too many parts: no sections.
+                Some(numbers) if numbers.is_empty() => {
+                    self.failed.insert(*key);
+                }
+                result => done.extend(result.map(|numbers| (*key, numbers))),
+            }
             is_running
         });
         done
@@ -277,7 +320,8 @@ impl SectionTasks {
 pub(super) fn build(app: &mut App) {
     app.register_type::<MeshSections>()
         .init_resource::<SectionTasks>()
-        .init_resource::<SectionTables>();
+        .init_resource::<SectionTables>()
+        .init_resource::<AllMeshes>();
     watch::<MeshSections>(app);
     app.add_systems(
         PostUpdate,

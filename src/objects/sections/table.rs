@@ -225,7 +225,7 @@ pub(crate) fn prepare_sections(
 mod tests {
     use bevy::{asset::uuid::Uuid, platform::collections::HashSet};
 
-    use super::*;
+    use super::{super::Origin, *};
 
     /// After any changes, every entity whose mesh is divided names the words of that mesh, at most
     /// about half of all words are unused, and only starts that have to are written.
@@ -244,7 +244,11 @@ mod tests {
             let packings = tables.packings;
             let entity = Entity::from_raw_u32(next(12)).expect("an index");
             let mesh = AssetId::from(Uuid::from_u128(u128::from(next(5))));
-            let key = SectionKey { mesh, angle: 50 };
+            let key = SectionKey {
+                mesh,
+                angle: 50,
+                origin: Origin::Asked,
+            };
             match next(4) {
                 0 => {
                     wanted.remove(&entity);

@@ -2,8 +2,8 @@
 
 use super::{
     edge::{
-        Normal, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge, step_excess,
-        step_response,
+        Normal, departure, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge,
+        step_excess, step_response,
     },
     map::is_background,
     smoothstep,
@@ -123,8 +123,14 @@ pub fn stored_width(half_width: f64) -> f64 {
 }
 
 /// Whether two sections of an object meet there, and whether one of them has no creases.
-/// Sections above 127 are those of meshes in groups, which must also bend by 10 degrees.
-fn sections(view: &View, pixel: [i64; 2], v: [i64; 2], fold: Option<f64>) -> (bool, bool) {
+/// Unless one of them was asked for (64 to 127), the surface must also bend by 10 degrees, or have
+/// a step.
+fn sections(
+    view: &View,
+    pixel: [i64; 2],
+    v: [i64; 2],
+    (fold, has_step): (Option<f64>, bool),
+) -> (bool, bool) {
     let Some(ids) = view.ids else {
         return (false, false);
     };
@@ -134,7 +140,11 @@ fn sections(view: &View, pixel: [i64; 2], v: [i64; 2], fold: Option<f64>) -> (bo
     });
     let [(id, here), (other, there)] = [at[2], at[3]];
     let bent = fold.unwrap_or(0.0) > (2.0 * 5f64.to_radians().sin()).powi(2);
-    let border = here != there && here != 0 && there != 0 && id == other && (here <= 127 || bent);
+    let asked = [here, there]
+        .iter()
+        .any(|section| (64..128).contains(section));
+    let ends = asked || bent || has_step;
+    let border = here != there && here != 0 && there != 0 && id == other && ends;
     (border, here == 255 || there == 255)
 }
 
@@ -200,7 +210,12 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let normals = along(view, pixel, v, |x, y| normal(view, x, y));
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        let (border, silent) = sections(view, pixel, v, folds[1]);
+        let (border, silent) = sections(
+            view,
+            pixel,
+            v,
+            (folds[1], departure(depths) > 2e-5 * reference),
+        );
         let p = if border {
             1.0
         } else {
@@ -209,8 +224,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         let ridge = is_ridge(folds) || border;
         let drawn = (ridge || is_rim_ridge(folds)) && !silent;
-        if drawn && excess < jump && is_stored(amount) && !crack.kinds[0] {
-            crack.kinds[1] = true;
+        let free = !crack.kinds[0] || border && !crack.certain;
+        if drawn && excess < jump && is_stored(amount) && free {
+            crack.kinds[..2].copy_from_slice(&[false, true]);
             crack.ink = amount;
             crack.certain = ridge && is_certain(p, k.edge_limit);
         }

@@ -66,6 +66,14 @@ pub fn step_excess(d: [f64; 6]) -> f64 {
             .max(0.0)
 }
 
+/// By how much the step between the third and the fourth of six raw depths departs from the slopes
+/// beside it, beyond four times what these bend.
+pub fn departure(d: [f64; 6]) -> f64 {
+    let [near_2, near, step, far, far_2] = [0, 1, 2, 3, 4].map(|i| d[i] - d[i + 1]);
+    let bends = (near_2 - near).abs().min((far_2 - far).abs());
+    (step - near).abs().min((step - far).abs()) - 4.0 * bends
+}
+
 /// Whether the step between the third and the fourth of six raw depths is part of a curve
 /// that ends in a larger step beside it: the one on its other side is at least a tenth of it.
 pub fn is_outdone(d: [f64; 6]) -> bool {

@@ -8,8 +8,16 @@ use bevy::{
 use super::*;
 
 fn divided(mesh: &Mesh, angle: f32) -> Vec<u8> {
+    divided_by(mesh, angle, Origin::Asked)
+}
+
+fn divided_by(mesh: &Mesh, angle: f32, origin: Origin) -> Vec<u8> {
     let surface = Surface::new(mesh).expect("readable").expect("triangles");
-    surface.divide(angle)
+    surface.divide(angle, origin)
+}
+
+fn found(mesh: &Mesh) -> Vec<u8> {
+    divided_by(mesh, 50.0, Origin::Found)
 }
 
 fn kinds(numbers: &[u8]) -> usize {
@@ -98,17 +106,17 @@ fn broken_meshes_do_no_harm() {
     assert!(Surface::new(&points).expect("readable").is_none());
 }
 
-/// The author's numbers: 0 is silent, 1 to 127 are kept, others wrap around.
+/// The author's numbers: 0 is silent, others follow those that are found, and wrap around.
 #[test]
 fn the_author_decides() {
     let mut cube = Mesh::from(Cuboid::from_length(2.0));
     let own: Vec<u32> = (0..24)
-        .map(|vertex| [0, 1, 127, 128, 5, 5][vertex / 4])
+        .map(|vertex| [0, 1, 64, 65, 5, 5][vertex / 4])
         .collect();
     cube.insert_attribute(ATTRIBUTE_MESH_SECTION, own);
     let numbers = divided(&cube, 50.0);
     let faces: Vec<u8> = numbers.chunks(2).map(|face| face[0]).collect();
-    assert_eq!(faces, [SILENT, 1, 127, 1, 5, 5]);
+    assert_eq!(faces, [SILENT, 64, 127, 64, 68, 68]);
 }
 
 /// With more parts than numbers, neighbours still differ.
@@ -129,9 +137,61 @@ fn neighbours_have_different_numbers() {
         .collect();
     let numbers = divided(&bare(&stairs, None), 50.0);
     assert_eq!(numbers.len(), 800);
-    assert_eq!(kinds(&numbers), usize::from(NUMBERS));
+    assert_eq!(kinds(&numbers), usize::from(NUMBERS - FOUND));
     for pair in numbers.chunks(2).collect::<Vec<_>>().windows(2) {
         assert_eq!(pair[0][0], pair[0][1]);
         assert_ne!(pair[0][0], pair[1][0]);
+    }
+}
+
+/// Edges that are shaded smoothly are no edges, unless they were asked for.
+#[test]
+fn smooth_edges_are_not_found() {
+    // 60 degrees between two facets of the side, whose normals are those of a round post.
+    let post = Cylinder::new(1.0, 2.0).mesh().resolution(6).build();
+    assert_eq!(kinds(&divided(&post, 50.0)), 8);
+    assert_eq!(kinds(&found(&post)), 3);
+    let hard = post.with_duplicated_vertices().with_computed_flat_normals();
+    assert_eq!(kinds(&found(&hard)), 8);
+    let cube = found(&Mesh::from(Cuboid::from_length(2.0)));
+    assert_eq!(kinds(&cube), 6);
+    assert!(cube.iter().all(|number| (1..=FOUND).contains(number)));
+}
+
+/// A patch of squares, each a section, on a floor.
+fn squares(count: usize, floor: f32) -> Mesh {
+    let square = |x: f32, y: f32, side: f32| {
+        let [a, b] = [[x, y, 0.0], [x + side, y, 0.0]];
+        let [c, d] = [[x + side, y + side, 0.0], [x, y + side, 0.0]];
+        [a, b, c, a, c, d]
+    };
+    let small = (0..count).flat_map(|i| square((i % 64) as f32, (i / 64) as f32, 0.5));
+    let corners: Vec<_> = small.chain(square(-floor, -floor, floor)).collect();
+    bare(&corners, None)
+}
+
+/// Meshes of which many small parts make up half of the area are left out.
+#[test]
+fn crowds_are_not_divided() {
+    assert!(found(&squares(3000, 1.0)).is_empty());
+    assert_eq!(divided(&squares(3000, 1.0), 50.0).len(), 6002);
+    assert_eq!(found(&squares(3000, 200.0)).len(), 6002);
+    assert_eq!(found(&squares(900, 1.0)).len(), 1802);
+}
+
+/// Parts that touch without a common edge differ too.
+#[test]
+fn parts_that_touch_have_different_numbers() {
+    let mut wall = Mesh::from(Cuboid::new(20.0, 10.0, 1.0));
+    for i in 0..8 {
+        let at = Vec3::new(2.0 * i as f32 - 7.0, 0.0, 0.5);
+        let frame = Mesh::from(Cuboid::new(1.0, 2.0, 0.1)).translated_by(at);
+        wall.merge(&frame).expect("the same attributes");
+    }
+    let numbers = found(&wall);
+    let fronts: HashSet<u8> = numbers.chunks(12).skip(1).map(|frame| frame[0]).collect();
+    assert_eq!(fronts.len(), 8);
+    for front in fronts {
+        assert!(!numbers[..12].contains(&front));
     }
 }
