@@ -33,8 +33,6 @@ use bevy::{
     window::PrimaryWindow,
 };
 
-#[cfg(feature = "objects")]
-use crate::objects::AllMeshes;
 use crate::{
     animation::Impacts,
     depth::MaterialsReadRange,
@@ -44,8 +42,6 @@ use crate::{
     origin::WorldOrigin,
     schedule::{ComicsSystems, RunImpacts},
 };
-#[cfg(feature = "objects")]
-use bevy::ecs::{change_detection::DetectChangesMut, system::ResMut};
 pub use light::KeyLight;
 pub use overlay::{ComicOverlay, overlay_camera};
 use prepasses::{give_up_claims, read_drawn_depth, request_prepasses};
@@ -67,8 +63,6 @@ pub(crate) struct CameraPlugin;
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         overlay::build(app);
-        #[cfg(feature = "objects")]
-        app.add_systems(Last, ask_for_edges.after(ComicsSystems::Plan));
         app.register_type::<KeyLight>()
             .register_type::<RangeOf>()
             .register_type::<WorldOrigin>()
@@ -157,13 +151,6 @@ fn plan_cameras(
             (None, None) => {}
         }
     }
-}
-
-/// Notes whether a camera asks for the edges of all meshes.
-#[cfg(feature = "objects")]
-fn ask_for_edges(plans: Query<&CameraPlan>, mut all: ResMut<AllMeshes>) {
-    let asks = |plan: &Plan| plan.sections && plan.lines.is_some_and(|l| l.divides_meshes());
-    all.set_if_neq(AllMeshes(plans.iter().any(|known| asks(&known.plan))));
 }
 
 /// The cameras whose visible ranges others take.

@@ -235,9 +235,7 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
-        self.sections = self.lines.is_some_and(|lines| {
-            lines.has_measured_creases() && (self.sections || lines.divides_meshes())
-        });
+        self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
         self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);

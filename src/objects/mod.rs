@@ -88,8 +88,6 @@ pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use object_ids::ObjectIds;
 #[cfg(feature = "objects")]
-pub(crate) use sections::AllMeshes;
-#[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
 pub use simplification::ObjectSimplification;

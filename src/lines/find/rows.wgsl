@@ -55,7 +55,8 @@ struct Above {
 // The borders between four pixels (here) and their neighbours (there). Without EXCESS
 // excesses are 0, without NORMALS folds are, without OBJECT_IDS objects and
 // marks are (see texel_object). BOUNDS: for walk.wgsl, which does not ask what only excludes
-// cracks; `outdone`, `ridge` and `rim` are not set.
+// cracks; `outdone`, `departs`, `ridge` and `rim` are
+// not set.
 struct Borders {
     here: vec4<f32>,
     there: vec4<f32>,

@@ -101,7 +101,7 @@ pub struct Creases {
     /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub equations: Equations,
-    /// Where creases are found besides. Default: [`CreaseSource::Normals`].
+    /// What creases are found by. Default: [`CreaseSource::Normals`].
     pub source: CreaseSource,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
@@ -127,7 +127,7 @@ pub struct Creases {
     pub opacity: f32,
 }
 
-/// Where creases are found.
+/// What creases are found by.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 pub enum CreaseSource {
@@ -143,7 +143,8 @@ pub enum CreaseSource {
     /// background task, where two triangles bend by 50 degrees and the normals of their common
     /// vertices differ by 15 degrees. Such an edge is a crease where the pixels confirm it: they
     /// bend by 10 degrees, or their depths have a step. Skinned and morphed meshes are left out,
-    /// and those that are mostly small parts, such as grass.
+    /// those that are mostly small parts, such as grass, and those that change again and again. A mesh
+    /// with `ATTRIBUTE_MESH_SECTION` has the sections of its author, without these rules.
     ///
     /// Faithful creases do not use it. The device must support `PRIMITIVE_INDEX`, which browsers do
     /// not; without it, this is [`Normals`](Self::Normals).

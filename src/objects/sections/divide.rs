@@ -19,8 +19,9 @@ const FOUND: u8 = 63;
 const SMOOTH: f32 = 15.0;
 /// Most sections that cover half of a mesh's area. More are grass, leaves, or rubble.
 const MOST: usize = 1000;
-/// Most sections whose boxes are compared.
+/// Most sections whose boxes are compared, and most pairs of them that touch.
 const MOST_BOXES: usize = 4000;
+const MOST_PAIRS: usize = 200_000;
 /// Vertices that are nearer to each other than this fraction of the mesh's diagonal are one.
 const WELD: f32 = 1e-5;
 
@@ -199,6 +200,9 @@ impl Surface {
                     .filter(|(_, b)| meets(b))
                     .map(|(other, _)| [*root, *other]),
             );
+            if pairs.len() > MOST_PAIRS {
+                return Vec::new();
+            }
         }
         pairs
     }

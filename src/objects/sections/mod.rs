@@ -6,13 +6,14 @@ mod table;
 use bevy::{
     app::{App, PostUpdate},
     asset::{AssetEvent, AssetEventSystems, AssetId, Assets},
+    camera::Camera3d,
     ecs::{
-        change_detection::DetectChanges,
+        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
         entity::{Entity, EntityHashSet},
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::{Changed, Has, With},
+        query::{Added, Changed, Has, Or, With},
         reflect::ReflectComponent,
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
@@ -36,7 +37,10 @@ use super::{
     inherit::{Inherit, Inherited, watch},
     table::ObjectStyles,
 };
-use crate::settings::{FieldRange, clamp_or_default};
+use crate::{
+    lines::Outlines,
+    settings::{FieldRange, clamp_or_default},
+};
 
 pub(crate) use table::{
     SectionBuffer, SectionStarts, SectionTables, extract_sections, prepare_sections,
@@ -59,7 +63,7 @@ pub(crate) use table::{
 /// through each other are sections too.
 ///
 /// Meshes of an [`OutlineGroup`](crate::OutlineGroup) and primitives of a glTF node continue
-/// each other: there, borders of sections that do not bend by 10 degrees are left out. If
+/// each other: there, borders of sections that neither bend by 10 degrees nor have a step are left out. If
 /// several entities above a mesh have the component, the nearest one counts. Faithful
 /// creases do not use sections.
 ///
@@ -144,19 +148,35 @@ type Numbers = Vec<u8>;
 pub(super) struct SectionTasks {
     waiting: HashSet<SectionKey>,
     running: HashMap<SectionKey, Task<Numbers>>,
-    /// Those that have no triangles, or cannot be read.
+    /// Those that have no triangles, cannot be read, or change all the time.
     failed: HashSet<SectionKey>,
+    /// How often those that were found have changed.
+    changes: HashMap<SectionKey, u32>,
     /// Whether the device can tell which triangle a pixel shows.
     supported: bool,
 }
 
 /// Whether a camera asks for the edges of all meshes.
 #[derive(Resource, Default, PartialEq)]
-pub(crate) struct AllMeshes(pub bool);
+pub(super) struct AllMeshes(bool);
+
+/// Notes it. A style that is faded out for a while still asks.
+fn ask_for_edges(cameras: Query<&Outlines, With<Camera3d>>, mut all: ResMut<AllMeshes>) {
+    let asked = cameras.iter().any(Outlines::divides_meshes);
+    all.set_if_neq(AllMeshes(asked));
+}
 
 /// The sections that a mesh entity has: their key, and if it shares its id with other
 /// meshes, by how much its numbers are shifted.
 pub(crate) type EntitySections = (SectionKey, Option<u8>);
+
+/// Most meshes that are divided at a time: each is copied for its task.
+const MOST_TASKS: usize = 16;
+/// Most changes of a mesh without [`MeshSections`] after which it is divided again.
+const MOST_CHANGES: u32 = 3;
+
+/// Entities with a new mesh, and with a mesh that is skinned or morphed from now on.
+type OtherMesh = Or<(Changed<Mesh3d>, Added<SkinnedMesh>, Added<MeshMorphWeights>)>;
 
 /// What says which mesh has which sections.
 #[derive(SystemParam)]
@@ -166,7 +186,7 @@ pub(super) struct Divided<'w, 's> {
     all: Res<'w, AllMeshes>,
     every_mesh: Query<'w, 's, Entity, With<Mesh3d>>,
     groups: Res<'w, ObjectGroups>,
-    other_mesh: Query<'w, 's, Entity, Changed<Mesh3d>>,
+    other_mesh: Query<'w, 's, Entity, OtherMesh>,
     removed: RemovedComponents<'w, 's, Mesh3d>,
 }
 
@@ -238,8 +258,7 @@ pub(super) fn divide_meshes(
         if let AssetEvent::Added { id } | AssetEvent::Modified { id } = event {
             for key in tables.keys_of(*id) {
                 tables.forget(key);
-                tasks.forget(key);
-                tasks.waiting.insert(key);
+                tasks.change(key);
             }
         }
     }
@@ -247,6 +266,7 @@ pub(super) fn divide_meshes(
         let [unused, new] = tables.assign(entity, divided.of(entity));
         if let Some(key) = unused {
             tasks.forget(key);
+            tasks.changes.remove(&key);
         }
         tasks.waiting.extend(new);
     }
@@ -261,6 +281,20 @@ pub(super) fn divide_meshes(
 }
 
 impl SectionTasks {
+    /// A mesh has changed.
+    fn change(&mut self, key: SectionKey) {
+        self.forget(key);
+        if key.origin == Origin::Found {
+            let changes = self.changes.entry(key).or_default();
+            *changes += 1;
+            if *changes > MOST_CHANGES {
+                self.failed.insert(key);
+                return;
+            }
+        }
+        self.waiting.insert(key);
+    }
+
     fn forget(&mut self, key: SectionKey) {
         self.waiting.remove(&key);
         self.running.remove(&key);
@@ -272,6 +306,9 @@ impl SectionTasks {
         let (running, failed) = (&mut self.running, &mut self.failed);
         let mut unread = Vec::new();
         self.waiting.retain(|key| {
+            if running.len() >= MOST_TASKS {
+                return true;
+            }
             let Some(mesh) = meshes.get(key.mesh) else {
                 return true;
             };
@@ -287,14 +324,22 @@ impl SectionTasks {
                 }
                 Err(error) => {
                     failed.insert(*key);
-                    unread.push((key.mesh, error));
+                    unread.push((*key, error));
                 }
             }
             false
         });
-        if let Some((mesh, error)) = unread.first() {
-            let count = unread.len();
+        let of = |origin| unread.iter().filter(move |(key, _)| key.origin == origin);
+        if let Some((key, error)) = of(Origin::Asked).next() {
+            let (count, mesh) = (of(Origin::Asked).count(), key.mesh);
             warn!("no `MeshSections` for {count} meshes; the first is {mesh}: {error}");
+        }
+        if let Some((key, error)) = of(Origin::Found).next() {
+            let mesh = key.mesh;
+            warn_once!(
+                "`CreaseSource::Both`: some meshes have creases of normals alone, because the main \
+                 world cannot read them; the first is {mesh}: {error}"
+            );
         }
     }
 
@@ -325,7 +370,8 @@ pub(super) fn build(app: &mut App) {
     watch::<MeshSections>(app);
     app.add_systems(
         PostUpdate,
-        divide_meshes
+        (ask_for_edges, divide_meshes)
+            .chain()
             .after(AssetEventSystems)
             .after(assign_object_styles)
             .after(update_object_groups)

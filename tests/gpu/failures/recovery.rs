@@ -10,7 +10,7 @@ use bevy::render::{
     error_handler::{ErrorType, RenderErrorPolicy},
     settings::WgpuSettings,
 };
-use bevy_comics::{SelectionOutline, XRayOutline};
+use bevy_comics::{SelectionOutline, XRayOutline, objects::LineWidths};
 use bevy_comics_testkit::validation;
 use image::RgbaImage;
 
@@ -81,6 +81,7 @@ fn put_objects(small: &mut Small) -> [Entity; 2] {
         [(-1.7, 1.8), (-0.2, 2.2), (1.2, -2.2), (1.7, 1.4)].map(|(x, z)| cube(x, z));
     let world = small.world();
     world.entity_mut(divided).insert(MeshSections::default());
+    world.entity_mut(wide).insert(LineWidths::default());
     world.entity_mut(wide).insert(OutlineStyle {
         width: Some(4.0),
         ..default()
