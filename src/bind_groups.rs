@@ -1,7 +1,7 @@
 //! Bind groups that are kept while what they bind is the same.
 
 use std::{
-    hash::{BuildHasher, Hash, Hasher},
+    hash::{BuildHasher, Hash},
     sync::{Mutex, PoisonError},
 };
 
@@ -106,9 +106,7 @@ impl Binder<'_> {
             return make();
         };
         let id = layout.id();
-        let mut hasher = FixedHasher.build_hasher();
-        (id, &bound).hash(&mut hasher);
-        let hash = hasher.finish();
+        let hash = FixedHasher.hash_one((id, &bound));
         let mut groups = self.groups.0.lock().unwrap_or_else(PoisonError::into_inner);
         let is_same = |kept: &Kept| kept.layout == id && kept.entries == bound;
         if let Some(kept) = groups.kept.find_mut(hash, is_same) {
