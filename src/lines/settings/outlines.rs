@@ -12,7 +12,7 @@ use super::{
     boil::LineBoil,
     color::LineColor,
     fog::LineFog,
-    kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
+    kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
 };
 use crate::{
@@ -308,9 +308,10 @@ impl Outlines {
     }
 
     /// Whether creases are found at the edges of all meshes.
+    #[cfg(feature = "objects")]
     pub(crate) fn divides_meshes(&self) -> bool {
         self.has_measured_creases()
-            && (self.creases).is_some_and(|creases| creases.source == CreaseSource::Both)
+            && (self.creases).is_some_and(|creases| creases.source == super::CreaseSource::Both)
     }
 
     /// Whether any kind has the faithful equations, whose ink is not found along cracks.
