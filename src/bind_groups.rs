@@ -14,7 +14,7 @@ use bevy::{
     },
     platform::{collections::HashTable, hash::FixedHasher},
     render::{
-        Render, RenderApp, RenderSystems,
+        GpuResourceAppExt, Render, RenderApp, RenderSystems,
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutId,
             BindingResource, PipelineCache,
@@ -27,12 +27,12 @@ use bevy::{
 pub(crate) fn build_render(app: &mut App) {
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
         render_app
-            .init_resource::<BindGroups>()
+            .init_gpu_resource::<BindGroups>()
             .add_systems(Render, forget_unused.in_set(RenderSystems::Cleanup));
     }
 }
 
-/// The bind groups of the last frames.
+/// The bind groups of the last frames. A new device has none.
 #[derive(Resource, Default)]
 pub(crate) struct BindGroups(Mutex<Groups>);
 

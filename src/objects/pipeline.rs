@@ -5,10 +5,8 @@ use std::ops::Deref;
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     ecs::{
-        entity::Entity,
-        query::{Or, With},
         resource::Resource,
-        system::{Commands, Query, Res},
+        system::{Commands, Res},
     },
     material::{AlphaMode, MaterialProperties, key::ErasedMaterialPipelineKey},
     math::UVec4,
@@ -31,10 +29,7 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{
-    ID_FORMAT, Pressure, WIDTH_FORMAT, depth_test::TolerantIds, line_widths::WidthBindings,
-    shading::has_sample_shading,
-};
+use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
 use crate::gpu::definitions;
 
 /// What all pipelines of this pass have in common.
@@ -56,14 +51,7 @@ pub(super) fn init_object_id_pipeline(
     prepass: Res<PrepassPipeline>,
     assets: Res<AssetServer>,
     adapter: Res<RenderAdapter>,
-    views: Query<Entity, Or<(With<WidthBindings>, With<TolerantIds>)>>,
 ) {
-    // This runs again after a lost device, whose buffers are no longer valid.
-    for view in &views {
-        commands
-            .entity(view)
-            .remove::<(WidthBindings, TolerantIds)>();
-    }
     let entries = BindGroupLayoutEntries::sequential(
         ShaderStages::FRAGMENT,
         (

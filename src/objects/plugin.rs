@@ -3,7 +3,12 @@
 use bevy::{
     app::{App, SubApp},
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::schedule::IntoScheduleConfigs,
+    ecs::{
+        entity::Entity,
+        query::{Or, With},
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query},
+    },
     pbr::queue_prepass_material_meshes,
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
@@ -15,7 +20,7 @@ use bevy::{
 use super::{
     backdrop::{Backdrops, remove_backdrops},
     changes::{self, NoteChanges, follow},
-    depth_test::{self, count_ids},
+    depth_test::{self, TolerantIds, count_ids},
     depths,
     draw::draw_object_ids,
     groups::ObjectGroups,
@@ -25,7 +30,7 @@ use super::{
     layer::prepare_layers,
     levels::Levels,
     lightmaps::{Lightmapped, extract_lightmapped},
-    line_widths::{WideMeshes, WidthViews, prepare_line_widths},
+    line_widths::{WideMeshes, WidthBindings, WidthViews, prepare_line_widths},
     marks::Marks,
     object_ids::{ObjectIds, begin_frame},
     phase::{ObjectIdItem, ObjectIdPhases},
@@ -66,11 +71,27 @@ pub(crate) fn build(app: &mut App) {
     depths::build(render_app);
 }
 
+/// Removes the buffers of views. This runs again after a lost device, whose buffers are no longer
+/// valid.
+fn forget_buffers(
+    mut commands: Commands,
+    views: Query<Entity, Or<(With<WidthBindings>, With<TolerantIds>)>>,
+) {
+    for view in &views {
+        commands
+            .entity(view)
+            .remove::<(WidthBindings, TolerantIds)>();
+    }
+}
+
 fn add_systems(render_app: &mut SubApp) {
     render_app
         .add_systems(
             RenderStartup,
-            init_object_id_pipeline.after(bevy::pbr::init_prepass_pipeline),
+            (
+                init_object_id_pipeline.after(bevy::pbr::init_prepass_pipeline),
+                forget_buffers,
+            ),
         )
         .add_systems(
             ExtractSchedule,
