@@ -63,6 +63,9 @@ impl ComicStyle {
             effects,
             ..Self::new()
         }
+        // Rounding takes interpolated numbers out of their ranges, and what is left of a faded
+        // setting can be nothing.
+        .sanitized()
     }
 
     /// The effects, those among them that others draw with.

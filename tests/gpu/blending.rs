@@ -3,6 +3,7 @@
 use bevy::asset::Assets;
 use bevy_comics::{
     StyleTransition,
+    depth::RangeSmoothing,
     style::{StyleTransitionFinished, TransitionEasing},
 };
 use image::RgbaImage;
@@ -44,6 +45,32 @@ fn whatever_lies_between_two_styles_is_a_style() {
             Ok(())
         })
         .unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn a_rounded_number_and_a_smoothing_of_nothing_are_in_their_ranges() {
+    let smoothing = |outliers| {
+        ComicStyle::new().with_depth_map(DepthMap {
+            smoothing: Some(RangeSmoothing {
+                outliers,
+                ..RangeSmoothing::OFF
+            }),
+            ..default()
+        })
+    };
+    let iso_lines = |x| {
+        ComicStyle::new().with(IsoLines {
+            center: Vec3::new(x, 0.0, 0.0),
+            ..default()
+        })
+    };
+    for (a, b, t) in [
+        (smoothing(f32::from_bits(1)), ComicStyle::new(), 0.9),
+        (iso_lines(-1e6), iso_lines(-1e6), 0.006_012_224_6),
+    ] {
+        let between = a.blend(&b, t);
+        assert_eq!(between, between.sanitized(), "{t}");
+    }
 }
 
 fn mean_apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
