@@ -106,7 +106,7 @@ fn plan_cameras(
     primary_window: Query<Entity, With<PrimaryWindow>>,
 ) {
     let lacks = (device.zip(adapter)).map_or_else(DeviceLacks::default, |(device, adapter)| {
-        DeviceLacks::new(&device.limits(), &adapter)
+        DeviceLacks::new(&device, &adapter)
     });
     let types = registry.types();
     let plan = |camera: EntityRef| {

@@ -2,7 +2,10 @@
 
 use bevy::{
     log::warn_once,
-    render::{renderer::RenderAdapterInfo, settings::WgpuLimits},
+    render::{
+        renderer::{RenderAdapterInfo, RenderDevice},
+        settings::WgpuFeatures,
+    },
 };
 
 use crate::depth::surfaces::prepass_is_empty;
@@ -13,6 +16,8 @@ pub(crate) struct DeviceLacks {
     pub compute_shaders: bool,
     /// Storage buffers in vertex and fragment shaders, which object ids need.
     pub object_ids: bool,
+    /// The index of a triangle in fragment shaders, which sections of meshes need.
+    pub primitive_index: bool,
     /// Copies of depth textures: see [`prepass_is_empty`].
     pub depth_copies: bool,
 }
@@ -22,10 +27,12 @@ impl DeviceLacks {
     /// included.
     const ID_BUFFERS: u32 = 4;
 
-    pub fn new(limits: &WgpuLimits, adapter: &RenderAdapterInfo) -> Self {
+    pub fn new(device: &RenderDevice, adapter: &RenderAdapterInfo) -> Self {
+        let limits = device.limits();
         Self {
             compute_shaders: limits.max_compute_workgroup_size_x == 0,
             object_ids: limits.max_storage_buffers_per_shader_stage < Self::ID_BUFFERS,
+            primitive_index: !device.features().contains(WgpuFeatures::PRIMITIVE_INDEX),
             depth_copies: prepass_is_empty(adapter),
         }
     }

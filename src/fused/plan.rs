@@ -11,7 +11,7 @@ use crate::{
     composite::{BeyondPrepass, DebugView, Finish, OwnPixels, SplitView, StyleWeight},
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::SkipReason,
-    lines::{Creases, LineFog, Outlines, Silhouettes, has_fog},
+    lines::{CreaseSource, Creases, LineFog, Outlines, Silhouettes, has_fog},
     objects::ObjectChanges,
 };
 
@@ -212,10 +212,19 @@ impl Plan {
     pub(super) fn resolve(&mut self) {
         let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
         let has_ids = self.has_ids();
+        let has_sections = has_ids && !self.lacks.primitive_index;
         self.lines = asked
             .map(Outlines::visible)
             .map(|lines| Outlines {
                 objects: lines.objects.filter(|_| has_ids),
+                creases: lines.creases.map(|creases| Creases {
+                    source: if has_sections {
+                        creases.source
+                    } else {
+                        CreaseSource::Normals
+                    },
+                    ..creases
+                }),
                 ..lines
             })
             .filter(|l| !l.is_empty());
@@ -418,7 +427,7 @@ impl Plan {
 
     pub fn needs_normals(&self) -> bool {
         let lines = self.lines;
-        lines.is_some_and(|lines| lines.creases.is_some() || lines.weight.reads_normals())
+        lines.is_some_and(|lines| lines.finds_by_normals() || lines.weight.reads_normals())
             || self.needs().contains(Needs::NORMALS)
             // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
             || (self.fades && self.needs_depth())

@@ -38,11 +38,19 @@ use super::{changes::Follow, shared::Shared};
 /// So a mesh with an `OutlineGroup` of its own is an object of its own.
 ///
 /// The primitives of one glTF node are one object without a group, see
-/// [id](crate::testing::ObjectIds). An `OutlineGroup` on a primitive separates it from
-/// the others.
+/// [id](crate::testing::ObjectIds); [`SplitPrimitives`] separates them.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineGroup;
+
+/// The primitives of glTF nodes below this entity, and of itself, are objects of their own: there
+/// are [object edges](crate::lines::ObjectEdges) between them.
+///
+/// The engine spawns one primitive per material. So with this component, all borders between the
+/// materials of a model have lines. Meshes in an [`OutlineGroup`] stay one object.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct SplitPrimitives;
 
 /// The longest way up to a group. It ends walks in hierarchies that are circles.
 pub(super) const DEEPEST: usize = 65_536;
@@ -92,9 +100,10 @@ pub(crate) struct GroupChanges {
     left: Vec<(Entity, Entity)>,
 }
 
-/// Registers the component and keeps [`ObjectGroups`] up to date.
+/// Registers the components and keeps [`ObjectGroups`] up to date.
 pub(crate) fn build(app: &mut App) {
     app.register_type::<OutlineGroup>()
+        .register_type::<SplitPrimitives>()
         .init_resource::<ObjectGroups>()
         .init_resource::<GroupChanges>()
         .add_observer(
@@ -104,6 +113,16 @@ pub(crate) fn build(app: &mut App) {
         )
         .add_observer(
             |on: On<Remove, OutlineGroup>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Insert, SplitPrimitives>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Remove, SplitPrimitives>, mut changes: ResMut<GroupChanges>| {
                 changes.subtrees.insert(on.entity);
             },
         )
@@ -146,6 +165,7 @@ type Tree<'w, 's> = Query<
         Option<&'static Children>,
         Option<&'static Mesh3d>,
         Has<OutlineGroup>,
+        Has<SplitPrimitives>,
     ),
 >;
 
@@ -194,32 +214,35 @@ struct Update<'a, 'w, 's> {
 
 impl Update<'_, '_, '_> {
     fn is_root(&self, entity: Entity) -> bool {
-        self.tree.get(entity).is_ok_and(|(.., root)| root)
+        self.tree.get(entity).is_ok_and(|(.., root, _)| root)
     }
 
-    /// The nearest entity with an `OutlineGroup`, from `entity` upwards.
-    fn nearest_root(&self, entity: Entity) -> Option<Entity> {
+    /// The nearest entity with a component, from `entity` upwards.
+    fn nearest(&self, entity: Entity, has_it: impl Fn(&Self, Entity) -> bool) -> Option<Entity> {
         let mut at = entity;
         for _ in 0..DEEPEST {
-            let (child_of, _, _, root) = self.tree.get(at).ok()?;
-            if root {
+            if has_it(self, at) {
                 return Some(at);
             }
-            at = child_of?.parent();
+            at = self.tree.get(at).ok()?.0?.parent();
         }
         None
     }
 
+    fn is_split(&self, entity: Entity) -> bool {
+        self.tree.get(entity).is_ok_and(|(.., split)| split)
+    }
+
     /// Updates the group of an entity and of its descendants, up to nested groups.
     fn subtree(&mut self, top: Entity) {
-        let root = self.nearest_root(top);
+        let root = self.nearest(top, Self::is_root);
         let mut below = vec![top];
         while let Some(entity) = below.pop() {
             if !self.visited.insert(entity) {
                 continue;
             }
-            let (child_of, children, mesh, _) =
-                self.tree.get(entity).unwrap_or((None, None, None, false));
+            let nothing = (None, None, None, false, false);
+            let (child_of, children, mesh, ..) = self.tree.get(entity).unwrap_or(nothing);
             let is_primitive = mesh.is_some_and(|m| m.path().and_then(primitive).is_some())
                 || self.groups.primitives.get(entity).is_some();
             let parent = child_of.filter(|_| mesh.is_some()).map(ChildOf::parent);
@@ -246,15 +269,16 @@ impl Update<'_, '_, '_> {
         let Ok((_, Some(children), ..)) = self.tree.get(parent) else {
             return;
         };
+        let split = self.nearest(parent, Self::is_split).is_some();
         let mut copies: HashMap<&AssetPath, usize> = HashMap::default();
         let mut objects: HashMap<(AssetPath, &str, usize), Vec<Entity>> = HashMap::default();
         let mut others = Vec::new();
         for child in children.iter().copied() {
-            let mesh = self.tree.get(child).ok().and_then(|(_, _, mesh, _)| mesh);
+            let mesh = self.tree.get(child).ok().and_then(|(_, _, mesh, ..)| mesh);
             let path = mesh.and_then(|mesh| mesh.path());
             let found = path.and_then(|path| Some((path, primitive(path)?)));
-            let grouped = self.groups.roots.get(child).is_some();
-            let Some((path, mesh)) = found.filter(|_| !grouped) else {
+            let apart = split || self.is_split(child) || self.groups.roots.get(child).is_some();
+            let Some((path, mesh)) = found.filter(|_| !apart) else {
                 others.push(child);
                 continue;
             };

@@ -42,7 +42,7 @@ use super::{
     line_widths::{WideMeshes, WidthBindings},
     phase::{Bin, Layer, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::{
-        IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
+        IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass, is_masked,
         reads_material,
     },
     sections::SectionStarts,
@@ -240,14 +240,14 @@ pub(super) struct IdItems<'w> {
 }
 
 impl IdItems<'_> {
-    fn variant(&self, entity: Entity, mesh: &RenderMesh, widths: bool) -> IdVariant {
+    fn variant(&self, entity: Entity, drawn: &DrawnMesh, widths: bool) -> IdVariant {
         let wanted = widths && self.wide.contains(entity);
-        let has_colors = mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
+        let has_colors = drawn.mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
         if wanted && !has_colors {
             warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colours");
         }
         IdVariant {
-            sections: self.sections.get(entity).is_some(),
+            sections: self.sections.draws(entity, is_masked(drawn.properties)),
             widths,
             vertex_widths: wanted && has_colors,
             tolerant: self.test.tolerant(),
@@ -290,7 +290,7 @@ impl IdItems<'_> {
                 (Layer::Marked, pipeline)
             }
             Drawn::Ids { widths } => {
-                let variant = self.variant(entity.id(), drawn.mesh, widths);
+                let variant = self.variant(entity.id(), &drawn, widths);
                 let mut specialize = |variant| {
                     let key = (key.clone(), variant);
                     self.pipelines.specialize(cache, &specializer, key, layout)

@@ -74,7 +74,7 @@ pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
 pub use depth_test::ObjectIdDepthTest;
 #[cfg(feature = "objects")]
-pub use groups::OutlineGroup;
+pub use groups::{OutlineGroup, SplitPrimitives};
 #[cfg(feature = "objects")]
 pub(crate) use layer::{LayerRequest, ViewLayer};
 #[cfg(feature = "objects")]
@@ -88,7 +88,7 @@ pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use object_ids::ObjectIds;
 #[cfg(feature = "objects")]
-pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
+pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections, MeshTasks};
 #[cfg(feature = "objects")]
 pub use simplification::ObjectSimplification;
 #[cfg(feature = "objects")]

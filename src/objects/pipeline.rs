@@ -87,6 +87,14 @@ pub(super) fn in_prepass(properties: &MaterialProperties) -> bool {
         )
 }
 
+/// Whether only parts of the triangles of meshes of this material are seen.
+pub(super) fn is_masked(properties: &MaterialProperties) -> bool {
+    matches!(
+        properties.alpha_mode,
+        AlphaMode::Mask(_) | AlphaMode::AlphaToCoverage
+    )
+}
+
 /// A layout of the pass of ids, with the depth of the prepass.
 pub(super) fn with_prepass_depth(
     layout: &BindGroupLayoutDescriptor,

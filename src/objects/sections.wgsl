@@ -14,6 +14,10 @@ enable primitive_index;
 // Four triangles to a word.
 @group(1) @binding(1) var<storage, read> sections: array<u32>;
 
+// How many sections a mesh can have that were found in all meshes, and that were asked for.
+const FOUND: u32 = 63u;
+const ASKED: u32 = 64u;
+
 struct Drawn {
     @location(0) object: vec2<u32>,
 #ifdef LINE_WIDTHS
@@ -22,17 +26,20 @@ struct Drawn {
 }
 
 // The section of a triangle. `start`: the first word of the mesh's sections, and from bit 24 on, for
-// meshes that share their id, 1 more than a number by which theirs are shifted, in a range of their
-// own from 128 to 254. 255 is no section.
+// meshes that share their id, 1 more than a number by which theirs are shifted, in ranges of their
+// own: numbers up to FOUND from 128 on, the others from 191 on. 255 is no section.
 fn section(start: u32, triangle: u32) -> u32 {
     let at = (start & 0xffffffu) + triangle / 4u;
     let word = sections[min(at, arrayLength(&sections) - 1u)];
     let number = (word >> (8u * (triangle % 4u))) & 255u;
-    let shift = start >> 24u;
+    let shift = (start >> 24u) & 127u;
     if shift == 0u || number == 0u || number == 255u {
         return number;
     }
-    return 128u + (number + shift - 2u) % 127u;
+    if number <= FOUND {
+        return 128u + (number + shift - 2u) % FOUND;
+    }
+    return 191u + (number + shift - FOUND - 2u) % ASKED;
 }
 
 @fragment

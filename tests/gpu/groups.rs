@@ -3,6 +3,7 @@
 use std::fs;
 
 use bevy::world_serialization::WorldAssetRoot;
+use bevy_comics::objects::SplitPrimitives;
 use serde_json::json;
 
 use crate::{
@@ -242,6 +243,11 @@ fn the_primitives_of_a_gltf_node_are_one_object() {
         small.on(part).remove::<OutlineGroup>();
         assert_one(&mut small, "together again");
     }
+
+    small.on(root).insert(SplitPrimitives);
+    assert_two(&mut small, "split");
+    small.on(root).remove::<SplitPrimitives>();
+    assert_one(&mut small, "no longer split");
 
     // A group on the root joins the nodes too.
     small.on(root).insert(OutlineGroup);

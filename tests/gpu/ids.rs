@@ -1,6 +1,6 @@
 //! Object ids, and objects with lines of their own or none.
 
-use bevy_comics::objects::OutlineKinds;
+use bevy_comics::{lines::CreaseSource, objects::OutlineKinds};
 
 use crate::{line_scenes::skinned, outlines::ink, prelude::*};
 
@@ -78,7 +78,12 @@ fn touching_objects_of_like_depth_and_normal_have_an_edge() {
         let found = [ids[30 * 120 + 50], ids[30 * 120 + 70], ids[0]];
         let sky = 0;
         assert_eq!(found, [small.id_of(left), small.id_of(right), sky]);
+        let creases = Creases {
+            source: CreaseSource::Normals,
+            ..default()
+        };
         let no_objects = Outlines {
+            creases: Some(creases),
             objects: None,
             ..default()
         };

@@ -242,7 +242,7 @@ fn a_frame_uploads_what_has_changed() {
         .insert(ObjectSimplification::fixed(0.5));
     step(&mut small, "one is simplified", 48);
     small.on(cubes[9].entity).insert(OutlineGroup);
-    step(&mut small, "one is a group of its own", 0);
+    step(&mut small, "the sections of a group have other numbers", 16);
 }
 
 /// While nothing changes, the passes of a view bind what they have bound before.

@@ -1,9 +1,9 @@
 //! Creases at the borders of the sections of meshes.
 
-use bevy::mesh::MeshBuilder;
+use bevy::{core_pipeline::prepass::NormalPrepass, mesh::MeshBuilder};
 use bevy_comics::{
     lines::CreaseSource,
-    objects::{ATTRIBUTE_MESH_SECTION, OutlineKinds},
+    objects::{ATTRIBUTE_MESH_SECTION, MeshTasks, OutlineKinds},
 };
 
 use crate::{
@@ -15,13 +15,21 @@ use crate::{
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
-fn creases() -> Outlines {
+fn creases_of(source: CreaseSource) -> Outlines {
     Outlines {
         silhouettes: None,
-        creases: Some(Creases::default()),
+        creases: Some(Creases {
+            source,
+            ..default()
+        }),
         objects: None,
         ..default()
     }
+}
+
+/// Creases of normals, and of meshes with `MeshSections`.
+fn creases() -> Outlines {
+    creases_of(CreaseSource::Normals)
 }
 
 fn section(marks: u32) -> u32 {
@@ -117,10 +125,11 @@ fn borders_of_sections_are_creases_of_known_length() {
     assert!(ink(&mut small, creases()) < 1.0);
 }
 
-/// The angle, and a change of it, decide; a mesh that changes is divided again.
+/// The angle, and a change of it, decide; a mesh that changes is divided again, also in tasks.
 #[test]
 fn sections_follow_the_angle_and_the_mesh() {
     let (mut small, cube) = corner(soft_cube(24.0));
+    small.world().insert_resource(MeshTasks::Background);
     small.on(cube).insert(MeshSections { angle: 100.0 });
     wait_for_creases(&mut small, some_has_sections);
     let one = ink(&mut small, creases());
@@ -134,6 +143,55 @@ fn sections_follow_the_angle_and_the_mesh() {
     *meshes.get_mut(&mesh).expect("loaded") = ball;
     wait(&mut small, |ids| kinds(ids) == 1);
     assert!(ink(&mut small, creases()) < 1.0, "a ball has one section");
+    small.world().insert_resource(MeshTasks::Immediate);
+}
+
+/// Two halves of a square, whose normals bend by 60 degrees and whose surface does not.
+fn bent_by_normals() -> Mesh {
+    let mut mesh = Mesh::from(Rectangle::new(12.0, 24.0)).translated_by(Vec3::NEG_X * 6.0);
+    let right = mesh.clone().translated_by(Vec3::X * 12.0);
+    mesh.merge(&right).expect("the same attributes");
+    let normals = [-0.5, 0.5].map(|x| [[x, 0.0, 0.75f32.sqrt()]; 4]).concat();
+    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+}
+
+#[test]
+fn cameras_choose_what_creases_are_found_by() {
+    use CreaseSource::{Both, Meshes, Normals};
+    let mut small = towards_the_sky(SIZE);
+    let edges = 3.0 * 24.0 * (2.0f64 / 3.0).sqrt() * 2.0;
+    for source in [Normals, Meshes, Both] {
+        put_corner(&mut small, Mesh::from(Cuboid::from_length(24.0)));
+        let cube = ink(&mut small, creases_of(source));
+        let is_right = (cube / edges - 1.0).abs() < 0.06;
+        assert!(is_right, "{source:?}: {cube}, {edges}");
+        let camera = small.camera;
+        let reads_normals = small.world().get::<NormalPrepass>(camera).is_some();
+        assert_eq!(reads_normals, source != Meshes, "{source:?}");
+
+        towards_the_sky_again(&mut small, Msaa::Off);
+        wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
+        let at = Transform::from_xyz(0.0, 0.0, -100.0);
+        small.put(bent_by_normals(), unlit(Color::WHITE), at);
+        let bent = ink(&mut small, creases_of(source));
+        assert_eq!(bent > 20.0, source != Meshes, "{source:?}: {bent}");
+    }
+    // Edges that one camera asks for are no creases of another one.
+    small.empty_view(Msaa::Off, Color::WHITE);
+    let turned = Quat::from_rotation_y(0.7);
+    let at = Transform::from_xyz(0.3, 0.2, -6.0).with_rotation(turned);
+    small.put(facade(0.05), unlit(Color::WHITE), at);
+    let alone = ink(&mut small, creases());
+    let inactive = Camera {
+        is_active: false,
+        ..default()
+    };
+    let other = (Object, Camera3d::default(), inactive, everywhere());
+    let other = small.world().spawn(other).id();
+    wait(&mut small, some_has_sections);
+    assert_eq!(ink(&mut small, creases()), alone);
+    assert!(ink(&mut small, creases_of(Both)) > alone + 10.0);
+    small.world().despawn(other);
 }
 
 /// Chunks of a floor in a group have no line between them, but folds have.
@@ -232,18 +290,11 @@ const FACADE: UVec2 = UVec2::new(384, 256);
 /// Half of the size of a frame in a wall, in metres.
 const FRAME: Vec2 = Vec2::new(0.6, 0.8);
 
-/// Creases at the edges of all meshes.
+/// Thin creases in normals and at the edges of all meshes.
 fn everywhere() -> Outlines {
-    let creases = Creases {
-        source: CreaseSource::Both,
-        ..default()
-    };
     Outlines {
-        silhouettes: None,
-        creases: Some(creases),
-        objects: None,
         width: 1.0,
-        ..default()
+        ..creases_of(CreaseSource::Both)
     }
 }
 
@@ -268,8 +319,9 @@ fn distance_to(p: Vec2, [a, b]: [Vec2; 2]) -> f32 {
 
 /// How much of the border of the frame's front has ink, and the part of all pixels that have ink away
 /// from all edges. A pixel with a line along a border has its middle up to 1.2 pixels from it: it lies
-/// up to 0.7 pixels from a place inside, and the line up to half a pixel beside the border.
-fn compare(picture: &image::RgbaImage, at: &Transform, proud: f32) -> [f64; 2] {
+/// up to 0.7 pixels from a place inside, and the line up to half a pixel beside the border. `aside`: how
+/// much further the samples of a pixel may be.
+fn compare(picture: &image::RgbaImage, at: &Transform, proud: f32, aside: f32) -> [f64; 2] {
     let corners = |half: Vec2, z: f32| {
         let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         signs.map(|sign| on_picture(*at * (half * Vec2::from(sign)).extend(z)))
@@ -300,7 +352,7 @@ fn compare(picture: &image::RgbaImage, at: &Transform, proud: f32) -> [f64; 2] {
         let steps = (2.0 * a.distance(b)) as usize + 1;
         for step in 0..=steps {
             let p = a.lerp(b, step as f32 / steps as f32);
-            let near = inked.iter().filter(|(at, _)| at.distance(p) <= 1.2);
+            let near = inked.iter().filter(|(at, _)| at.distance(p) <= 1.2 + aside);
             whole += usize::from(near.map(|(_, ink)| ink).sum::<f64>() > 0.5);
             all += 1;
         }
@@ -314,16 +366,17 @@ fn compare(picture: &image::RgbaImage, at: &Transform, proud: f32) -> [f64; 2] {
 
 /// Frames that stand 1 to 8 cm proud of a wall, have whole borders, seen as in a picture of 720 rows and
 /// 45 degrees from 20 to 60 m.
-fn check_frames(yaws: impl Iterator<Item = f32> + Clone) {
+fn check_frames(msaa: Msaa, yaws: impl Iterator<Item = f32> + Clone) {
+    let aside = if msaa == Msaa::Off { 0.0 } else { 0.4 };
     let lines = Outlines {
         silhouettes: Some(Silhouettes::default()),
         ..everywhere()
     };
-    let mut small = Small::new(FACADE, Msaa::Off);
+    let mut small = Small::new(FACADE, msaa);
     let (mut found, mut count, mut most_wrong) = (0.0, 0.0, 0.0f64);
     let (mut by_normals, mut controls) = (0.0, 0.0);
     for proud in [0.01, 0.05, 0.08] {
-        small.empty_view(Msaa::Off, Color::WHITE);
+        small.empty_view(msaa, Color::WHITE);
         let wall = small.put(facade(proud), unlit(Color::WHITE), Transform::default());
         small.on(wall).insert(Transform::from_xyz(0.0, 0.0, -12.0));
         small.style(&outlined(lines));
@@ -335,7 +388,7 @@ fn check_frames(yaws: impl Iterator<Item = f32> + Clone) {
                 small.on(wall).insert(at);
                 small.style(&outlined(lines));
                 small.headless.step(2);
-                let [whole, wrong] = compare(&small.picture(), &at, proud);
+                let [whole, wrong] = compare(&small.picture(), &at, proud, aside);
                 assert!(whole > 0.9, "{proud} m, {distance} m, {yaw}: {whole}");
                 (found, count) = (found + whole, count + 1.0);
                 most_wrong = most_wrong.max(wrong);
@@ -349,7 +402,7 @@ fn check_frames(yaws: impl Iterator<Item = f32> + Clone) {
                     small.on(wall).insert(MeshSections::NONE);
                     small.style(&outlined(normals));
                     small.settle();
-                    by_normals += compare(&small.picture(), &at, proud)[0];
+                    by_normals += compare(&small.picture(), &at, proud, aside)[0];
                     controls += 1.0;
                     small.on(wall).remove::<MeshSections>();
                     small.style(&outlined(lines));
@@ -368,13 +421,16 @@ fn check_frames(yaws: impl Iterator<Item = f32> + Clone) {
 
 #[test]
 fn frames_of_walls_have_whole_borders() {
-    check_frames([-65.0, 40.0].into_iter());
+    check_frames(Msaa::Off, [-65.0, 40.0].into_iter());
+    check_frames(Msaa::Sample4, [25.0].into_iter());
 }
 
 #[test]
-#[ignore = "long: 45 yaws"]
+#[ignore = "long: 45 yaws, without and with samples"]
 fn frames_of_walls_have_whole_borders_from_everywhere() {
-    check_frames((0..45).map(|i| -70.0 + 140.0 * i as f32 / 44.0));
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        check_frames(msaa, (0..45).map(|i| -70.0 + 140.0 * i as f32 / 44.0));
+    }
 }
 
 /// The triangles of a mesh whose middles are on one side of the ground.

@@ -5,20 +5,11 @@ use std::{
     fs::{self, File},
     io::BufWriter,
     path::Path,
-    thread,
-    time::Duration,
 };
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Paint,
-    objects::{MeshSections, PatternAnchor},
-    presets,
-};
-use bevy_comics_testkit::{
-    scenes::BuiltIn,
-    studio::{Studio, set_sections},
-};
+use bevy_comics::{Paint, objects::PatternAnchor, presets};
+use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
 
 use crate::palette::Palette;
@@ -28,15 +19,12 @@ const FRAMES: u16 = 36;
 /// Frames per second.
 const RATE: u16 = 15;
 
-/// Frames in which meshes are divided into sections.
-const SETTLE: usize = 10;
-
 /// What the page of looks says about them.
 pub const SECTION: &str = "\n## In motion\n\n\
     ![A figure turns, and broad cuts turn with it](strokes-in-motion.png)\n\n\
     *`woodcut` with a smaller brush. The figure has a `PatternAnchor`: strokes stay where they are on what moves.*\n\n\
     ![The camera goes to and fro in the village](lines-in-motion.png)\n\n\
-    *`ligne-claire`. Houses have `MeshSections`: lines neither break nor jump. Made by `cargo run --example pictures -- loops`.*\n";
+    *`ligne-claire`: lines neither break nor jump. Made by `cargo run --example pictures -- loops`.*\n";
 
 pub fn write(folder: &Path) -> Result<(), String> {
     fs::create_dir_all(folder)
@@ -86,12 +74,7 @@ fn strokes() -> Vec<RgbaImage> {
 
 fn lines() -> Vec<RgbaImage> {
     let mut studio = Studio::new(BuiltIn::Village, SIZE, Msaa::Sample4);
-    set_sections(studio.headless.app.world_mut(), MeshSections::default());
     studio.shoot(Some(&presets::LIGNE_CLAIRE.style()));
-    for _ in 0..SETTLE {
-        studio.headless.step(1);
-        thread::sleep(Duration::from_millis(100));
-    }
     let (eye, target) = (studio.vantage.eye, studio.vantage.target);
     let frames = (0..FRAMES).map(|frame| {
         let turn = Quat::from_rotation_y(0.06 * swing(frame));

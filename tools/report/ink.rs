@@ -132,7 +132,6 @@ pub fn dash_steps(run: &Run) -> Result<(), String> {
         if method == IN_SECTIONS {
             set_sections(lined.rig.headless.app.world_mut(), MeshSections::default());
         }
-        // Meshes are divided in the background.
         lined.rig.headless.step(30);
         let mut counts = Ends::default();
         for (frame, true_ends) in truth.iter().enumerate() {

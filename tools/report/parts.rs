@@ -9,8 +9,8 @@ use bevy::{
 use bevy_comics::{
     ComicStyle, DepthLayers, Desaturation, NoStyle, OutlineStyle, Outlines, SelectionOutline,
     XRayOutline,
-    lines::{Creases, LineColor, LineResponse, LineWeight, Silhouettes},
-    objects::{DepthWrite, LineWidths, MeshSections},
+    lines::{CreaseSource, Creases, LineColor, LineResponse, LineWeight, Silhouettes},
+    objects::{DepthWrite, LineWidths},
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -175,7 +175,6 @@ impl Part {
         let mut rig = Rig::new(Some(self.scene), size(run));
         rig.unlight();
         change(&mut rig);
-        // Meshes are divided in the background.
         rig.headless.step(if run.quick { 5 } else { 30 });
         rig
     }
@@ -186,7 +185,6 @@ fn changes() -> Vec<Part> {
     let colors = || ComicStyle::new().with(Desaturation::default());
     let mut parts = vec![
         Part::new("outlines", |_| (), outlines()),
-        Part::new("outlines; meshes in sections", sections, outlines()).compared(),
         Part::new("outlines; widths of vertices", widths, outlines()).compared(),
         Part::new("outlines; a width of each mesh", own_widths, outlines()).compared(),
         Part::new("outlines; 4 samples", samples, outlines()).compared(),
@@ -212,6 +210,30 @@ fn changes() -> Vec<Part> {
                     ComicStyle::new().with(forgetful),
                 ),
                 ("outlines; temporal anti-aliasing; memory", outlines()),
+            ],
+            base: None,
+        });
+        let creases = |source| {
+            let creases = Some(Creases {
+                source,
+                ..default()
+            });
+            ComicStyle::new().with(Outlines {
+                creases,
+                ..default()
+            })
+        };
+        parts.push(Part {
+            name: "what creases are found by",
+            scene,
+            change: |_| (),
+            styles: vec![
+                (
+                    "outlines; creases of normals",
+                    creases(CreaseSource::Normals),
+                ),
+                ("outlines; creases of meshes", creases(CreaseSource::Meshes)),
+                ("outlines; creases of both", creases(CreaseSource::Both)),
             ],
             base: None,
         });
@@ -247,10 +269,6 @@ fn meshes(rig: &mut Rig) -> Vec<Entity> {
     let world = rig.headless.app.world_mut();
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     meshes.iter(world).collect()
-}
-
-fn sections(rig: &mut Rig) {
-    mark(rig, MeshSections::default());
 }
 
 /// Widths of 0.5 to 1.5, alternating from vertex to vertex.

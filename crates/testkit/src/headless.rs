@@ -25,6 +25,8 @@ use bevy::{
     winit::WinitPlugin,
 };
 
+use bevy_comics::objects::MeshTasks;
+
 use crate::{
     ROOT,
     pool::{self, Baseline, Pool},
@@ -234,7 +236,8 @@ impl Headless {
 
     /// Starts an app that has the engine's [`plugins`].
     pub fn of(mut app: App, options: HeadlessOptions) -> Self {
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
+            .insert_resource(MeshTasks::Immediate);
         let target = new_target(app.world_mut(), options.size, options.format);
         while app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();

@@ -42,9 +42,10 @@ struct Lines {
     // Of lines in the colour of surfaces: factors of luminance and of the distance from grey.
     surface_darken: f32,
     surface_saturate: f32,
+    // 1 where borders of sections that were found in all meshes count; otherwise 0.
+    found_sections: u32,
     unused_x: f32,
     unused_y: f32,
-    unused_z: f32,
 }
 
 // The grid that lines are found on: the pixels of the depth texture.
@@ -150,18 +151,39 @@ fn step_excess(
     return abs(step) - max(vec4(0.0), max(near_slope, far_slope));
 }
 
-// By how much the step between two neighbours departs from the slopes beside it, beyond four times
-// what these bend: 0 or less on planes and curves, positive where one surface ends in front of
-// another one, or bends.
-fn departure(
+// How the depths of six pixels in a row depart from a plane in their middle, beyond four times what
+// they bend beside it: 0 or less on planes and curves.
+struct Departures {
+    // The step between the two in the middle, and the larger of those on both sides of it.
+    step: vec4<f32>,
+    beside: vec4<f32>,
+    // How much the slope changes between them.
+    turn: vec4<f32>,
+}
+
+// A step makes two bends in a row in opposite directions.
+fn step_of(bend: vec4<f32>, next: vec4<f32>) -> vec4<f32> {
+    let opposite = (bend > vec4(0.0)) != (next > vec4(0.0));
+    return select(vec4(0.0), min(abs(bend), abs(next)), opposite);
+}
+
+fn departures(
     before_2: vec4<f32>, before: vec4<f32>, here: vec4<f32>,
     there: vec4<f32>, beyond: vec4<f32>, beyond_2: vec4<f32>,
-) -> vec4<f32> {
-    let step = here - there;
-    let near = before - here;
-    let far = there - beyond;
-    let bends = min(abs(before_2 - before - near), abs(beyond - beyond_2 - far));
-    return min(abs(step - near), abs(step - far)) - 4.0 * bends;
+) -> Departures {
+    let bend_0 = (before_2 - before) - (before - here);
+    let bend_1 = (before - here) - (here - there);
+    let bend_2 = (here - there) - (there - beyond);
+    let bend_3 = (there - beyond) - (beyond - beyond_2);
+    let outer = 4.0 * min(abs(bend_0), abs(bend_3));
+    return Departures(
+        step_of(bend_1, bend_2) - outer,
+        max(
+            step_of(bend_0, bend_1) - 4.0 * min(abs(bend_2), abs(bend_3)),
+            step_of(bend_2, bend_3) - 4.0 * min(abs(bend_0), abs(bend_1)),
+        ),
+        abs(bend_1 + bend_2) - outer,
+    );
 }
 
 // The step on the other side of one beside a larger step, as a fraction of it, from which

@@ -142,35 +142,62 @@ fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, k
 #endif
 
 #ifdef SECTIONS
-// Sections up to this one were found, and pixels must confirm their borders: so must those of
-// meshes in groups, above the second one. The last one has no creases.
+// Sections up to the first one were found, those up to the second one were asked for; above them,
+// also those of meshes in groups, see sections.wgsl. The last one has no creases. Pixels must confirm
+// the borders of all but those that were asked for outside of groups.
 const LAST_FOUND: u32 = 63u;
 const LAST_ALONE: u32 = 127u;
+const LAST_FOUND_IN_GROUP: u32 = 190u;
 const SILENT: u32 = 255u;
 // The fold of 10 degrees.
 const BENT: f32 = 0.0304;
-// A departure from the slopes beside, as a fraction of what a jump is a fraction of.
+// A step, and a change of the slope per pixel, as fractions of what a jump is a fraction of.
 const STEP: f32 = 2e-5;
+const TURN: f32 = 5e-5;
 
-fn sections_of(marks: vec4<u32>) -> vec4<u32> {
-    return marks >> vec4(ABOVE_SLOT);
+// 0 where there is no section.
+fn sections_of(s: Lines, marks: vec4<u32>) -> vec4<u32> {
+    let sections = marks >> vec4(ABOVE_SLOT);
+    let in_group = (sections > vec4(LAST_ALONE)) & (sections <= vec4(LAST_FOUND_IN_GROUP));
+    let found = (sections <= vec4(LAST_FOUND)) | in_group;
+    return select(sections, vec4(0u), found & vec4(s.found_sections == 0u));
+}
+
+// Whether the surface has a step at the next crack. In a multisampled view, the depth of a pixel may
+// be that of another sample than its section, see resolve.wgsl. A step that separates two surfaces, or
+// has a silhouette, has its line.
+fn has_step_beside(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
+    let beside = at.departs.beside;
+    let has_step = (beside > STEP * reference) & (beside < s.jump * reference);
+#ifdef SILHOUETTES
+    let response = step_response(beside, s.silhouette_k * reference);
+    let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
+    return has_step & (byte(ink) == vec4(0u));
+#else
+    return has_step;
+#endif
 }
 
 // Whether two sections of an object meet. Unless one of them was asked for, the surface must also
-// bend there, or have a step or a bend in depth.
-fn section_borders(at: Borders, reference: vec4<f32>) -> vec4<bool> {
-    let here = sections_of(at.marks_here);
-    let there = sections_of(at.marks_there);
+// bend there, or have a step.
+fn section_borders(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
+    let here = sections_of(s, at.marks_here);
+    let there = sections_of(s, at.marks_there);
     let differ = (here != there) & (here != vec4(0u)) & (there != vec4(0u));
     let asked_here = (here > vec4(LAST_FOUND)) & (here <= vec4(LAST_ALONE));
     let asked_there = (there > vec4(LAST_FOUND)) & (there <= vec4(LAST_ALONE));
-    let seen = (at.folds > vec4(BENT)) | (at.departs > STEP * reference);
-    let ends = asked_here | asked_there | seen;
+#ifdef NORMALS
+    let bends = at.folds > vec4(BENT);
+#else
+    let bends = at.departs.turn > TURN * reference;
+#endif
+    let steps = (at.departs.step > STEP * reference) | has_step_beside(s, at, reference);
+    let ends = asked_here | asked_there | bends | steps;
     return differ & ends & (at.object_here == at.object_there);
 }
 
 fn are_silent(at: Borders) -> vec4<bool> {
-    return max(sections_of(at.marks_here), sections_of(at.marks_there)) == vec4(SILENT);
+    return max(at.marks_here, at.marks_there) >> vec4(ABOVE_SLOT) == vec4(SILENT);
 }
 #endif
 
@@ -183,7 +210,7 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     var rim = at.rim;
     var free = found.kinds == vec4(0u);
 #ifdef SECTIONS
-    let border = section_borders(at, reference);
+    let border = section_borders(s, at, reference);
     response = select(response, vec4(1.0), border);
     ridge = (ridge | border) & !are_silent(at);
     rim &= !are_silent(at);

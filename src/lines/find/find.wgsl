@@ -5,7 +5,7 @@
 #import bevy_comics::depth::view::{is_drawn_sky, set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
 #import bevy_comics::lines::edge::{
-    departure, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+    departures, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
 }
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
@@ -72,7 +72,7 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.excess = step_excess(before_2, before, at.here, at.there, beyond, beyond_2);
     at.outdone = is_outdone(before, at.here, at.there, beyond);
 #ifdef SECTIONS
-    at.departs = departure(before_2, before, at.here, at.there, beyond, beyond_2);
+    at.departs = departures(before_2, before, at.here, at.there, beyond, beyond_2);
 #endif
 #ifdef NORMALS
     let n = normal_at(origin + p);

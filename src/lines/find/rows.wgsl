@@ -6,7 +6,7 @@
 
 #import bevy_comics::depth::view::{is_drawn_sky, texel_depth}
 #import bevy_comics::lines::edge::{
-    departure, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+    Departures, departures, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
 }
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -62,8 +62,8 @@ struct Borders {
     there: vec4<f32>,
     excess: vec4<f32>,
     outdone: vec4<bool>,
-    // SECTIONS: see departure.
-    departs: vec4<f32>,
+    // SECTIONS.
+    departs: Departures,
     folds: vec4<f32>,
     ridge: vec4<bool>,
     rim: vec4<bool>,
@@ -110,11 +110,11 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
     );
 #ifndef BOUNDS
 #ifdef SECTIONS
-    (*found).east.departs = departure(
+    (*found).east.departs = departures(
         vec4(depth_at(c, c.west.x, y), west, depth.xy), (*found).before, depth,
         (*found).east.there, vec4(depth.zw, e, f), vec4(depth.w, e, f, depth_at(c, c.east.z, y)),
     );
-    (*found).south.departs = departure(
+    (*found).south.departs = departures(
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
     );
 #endif

@@ -142,6 +142,7 @@ impl LineKey {
         .union(Self::SKY_BEYOND)
         .union(Self::SILHOUETTES)
         .union(Self::CREASES)
+        .union(Self::NORMALS)
         .union(Self::OBJECT_EDGES)
         .union(Self::SECTIONS)
         .union(Self::MARKS)
@@ -207,6 +208,7 @@ impl LineKey {
             (request.visible_range, Self::VISIBLE_RANGE),
             (silhouettes, Self::SILHOUETTES),
             (creases, Self::CREASES),
+            (creases && lines.finds_by_normals(), Self::NORMALS),
             (object_edges, Self::OBJECT_EDGES),
             (creases && request.sections && request.ids, Self::SECTIONS),
             (request.marks, Self::MARKS),
@@ -285,7 +287,6 @@ impl LineKey {
             | Self::DEPTH
             | Self::BOUNDS
             | self.when(Self::SILHOUETTES | Self::LEDGES, Self::EXCESS)
-            | self.when(Self::CREASES, Self::NORMALS)
             | self.when(Self::OBJECT_EDGES | Self::SECTIONS, Self::OBJECT_IDS)
             | self.when(Self::JUMPS, self & map)
     }
@@ -298,7 +299,6 @@ impl LineKey {
         self & (Self::FOUND | Self::OBJECT_STYLES | Self::FADING | simplified | stored)
             | Self::DEPTH
             | self.when(Self::SILHOUETTES | Self::CREASES, Self::EXCESS)
-            | self.when(Self::CREASES, Self::NORMALS)
             | self.when(objects | Self::FINDS_BY_OBJECTS, Self::OBJECT_IDS)
             | self.when(Self::FINDS_BY_OBJECTS, Self::OBJECT_DEPTHS)
             | self.when(

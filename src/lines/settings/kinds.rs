@@ -101,7 +101,7 @@ pub struct Creases {
     /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub equations: Equations,
-    /// What creases are found by. Default: [`CreaseSource::Normals`].
+    /// What creases are found by. Default: [`CreaseSource::Both`].
     pub source: CreaseSource,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
@@ -128,33 +128,37 @@ pub struct Creases {
 }
 
 /// What creases are found by.
+///
+/// The edges of meshes are exact: lines along faces that are thinner than a pixel, such as those of
+/// window frames, have no gaps. For them every mesh is divided once, in a background task (see
+/// [`MeshTasks`](crate::objects::MeshTasks)), where two triangles bend by 50 degrees and the normals
+/// of their common vertices differ by 15 degrees. Such an edge is a crease where the pixels confirm it:
+/// they bend by 10 degrees, or their depths have a step. Left out are meshes that are skinned,
+/// morphed, transparent or alpha-masked, have more than a million triangles, are mostly small parts,
+/// such as grass, or change again and again. [`MeshSections`](crate::objects::MeshSections) divides
+/// single meshes without these rules, and `MeshSections::NONE` leaves them out; a mesh with
+/// `ATTRIBUTE_MESH_SECTION` has the sections of its author.
+///
+/// Meshes are divided on devices with `PRIMITIVE_INDEX`, which browsers do not have; on the others
+/// every source is [`Normals`](Self::Normals). Faithful creases are found in normals only.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 pub enum CreaseSource {
     /// In the normals of pixels, and at the borders of the meshes with
     /// [`MeshSections`](crate::objects::MeshSections).
-    #[default]
     Normals,
-    /// In the normals of pixels, and at the edges of all meshes, which are exact: lines along faces
-    /// that are thinner than a pixel, such as those of window frames, have no gaps. If one camera
-    /// asks for it, the creases of all cameras have these edges.
-    ///
-    /// Every mesh without [`MeshSections`](crate::objects::MeshSections) is divided once, in a
-    /// background task, where two triangles bend by 50 degrees and the normals of their common
-    /// vertices differ by 15 degrees. Such an edge is a crease where the pixels confirm it: they
-    /// bend by 10 degrees, or their depths have a step. Skinned and morphed meshes are left out,
-    /// those that are mostly small parts, such as grass, and those that change again and again. A mesh
-    /// with `ATTRIBUTE_MESH_SECTION` has the sections of its author, without these rules.
-    ///
-    /// Faithful creases do not use it. The device must support `PRIMITIVE_INDEX`, which browsers do
-    /// not; without it, this is [`Normals`](Self::Normals).
+    /// At the edges of meshes. Normals are not read, so normal maps have no creases, and the camera
+    /// needs no normal prepass. Meshes that are left out have no creases.
+    Meshes,
+    /// In the normals of pixels, and at the edges of meshes.
+    #[default]
     Both,
 }
 
 impl Creases {
     pub(crate) const DEFAULT: Self = Self {
         equations: Equations::Corrected,
-        source: CreaseSource::Normals,
+        source: CreaseSource::Both,
         angle: 40.0,
         edge_limit: 0.5,
         softness: 0.5,

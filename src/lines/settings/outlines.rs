@@ -12,7 +12,7 @@ use super::{
     boil::LineBoil,
     color::LineColor,
     fog::LineFog,
-    kinds::{Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
+    kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
 };
 use crate::{
@@ -308,10 +308,18 @@ impl Outlines {
     }
 
     /// Whether creases are found at the edges of all meshes.
-    #[cfg(feature = "objects")]
     pub(crate) fn divides_meshes(&self) -> bool {
         self.has_measured_creases()
-            && (self.creases).is_some_and(|creases| creases.source == super::CreaseSource::Both)
+            && (self.creases).is_some_and(|creases| creases.source != CreaseSource::Normals)
+    }
+
+    /// Whether finding lines reads normals. Hard lines choose their side by them.
+    pub(crate) fn finds_by_normals(&self) -> bool {
+        self.creases.is_some_and(|creases| {
+            creases.equations == Equations::Faithful
+                || creases.source != CreaseSource::Meshes
+                || self.edge == LineEdge::Hard
+        })
     }
 
     /// Whether any kind has the faithful equations, whose ink is not found along cracks.
@@ -426,9 +434,9 @@ impl Outlines {
             crease_limit: limit(c.edge_limit),
             surface_darken,
             surface_saturate,
+            found_sections: u32::from(self.divides_meshes()),
             unused_x: 0.0,
             unused_y: 0.0,
-            unused_z: 0.0,
         }
     }
 }
@@ -463,9 +471,9 @@ pub(crate) struct LinesUniform {
     crease_limit: f32,
     surface_darken: f32,
     surface_saturate: f32,
+    found_sections: u32,
     unused_x: f32,
     unused_y: f32,
-    unused_z: f32,
 }
 
 #[cfg(test)]

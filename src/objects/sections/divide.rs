@@ -17,6 +17,8 @@ pub(super) const NUMBERS: u8 = 127;
 const FOUND: u8 = 63;
 /// Normals at an edge that differ by less are smooth, in degrees.
 const SMOOTH: f32 = 15.0;
+/// Most triangles of a mesh in which sections are found.
+const MOST_TRIANGLES: usize = 1_000_000;
 /// Most sections that cover half of a mesh's area. More are grass, leaves, or rubble.
 const MOST: usize = 1000;
 /// Most sections whose boxes are compared, and most pairs of them that touch.
@@ -35,15 +37,25 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// `None` for a mesh without triangles.
-    pub fn new(mesh: &Mesh) -> Result<Option<Self>, MeshAccessError> {
+    /// `None` for a mesh without triangles, and for one that has too many of them to be divided
+    /// unless it was asked for.
+    pub fn new(mesh: &Mesh, origin: Origin) -> Result<Option<Self>, MeshAccessError> {
+        let corners = mesh
+            .try_indices_option()?
+            .map_or(mesh.count_vertices(), Indices::len);
+        if origin == Origin::Found && corners > 3 * MOST_TRIANGLES {
+            return Ok(None);
+        }
         let Some(VertexAttributeValues::Float32x3(positions)) =
             mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION)?
         else {
             return Ok(None);
         };
+        // Only the edges that were found depend on normals.
         let normals = match mesh.try_attribute_option(Mesh::ATTRIBUTE_NORMAL)? {
-            Some(VertexAttributeValues::Float32x3(n)) if n.len() == positions.len() => {
+            Some(VertexAttributeValues::Float32x3(n))
+                if origin == Origin::Found && n.len() == positions.len() =>
+            {
                 Some(n.iter().copied().map(Vec3::from).collect())
             }
             _ => None,

@@ -19,7 +19,7 @@ use bevy::{
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
         system::{Query, Res, ResMut, SystemParam},
     },
-    log::{warn, warn_once},
+    log::{info_once, warn, warn_once},
     mesh::{
         Mesh, Mesh3d, MeshVertexAttribute, VertexFormat, morph::MeshMorphWeights,
         skinning::SkinnedMesh,
@@ -49,14 +49,13 @@ pub(crate) use table::{
 /// Divides the meshes of this entity and of its descendants into sections: parts that bend
 /// nowhere as sharply as `angle`. Where two sections of an object meet, there is a crease.
 ///
-/// Creases are otherwise found in the normals of pixels, with a threshold: at the horizon, or
-/// where a bend is close to the threshold, they break into dashes. Borders of sections are
-/// exact: they depend neither on the view, nor on the distance, nor on normal maps. Bends
-/// inside of a section, which end in the middle of a surface, are still found in normals.
-/// The creases themselves are those of the camera's [`Outlines`](crate::Outlines).
+/// Cameras divide all meshes by themselves, by rules that leave some edges and meshes out: see
+/// [`CreaseSource`](crate::lines::CreaseSource). This component replaces these rules on single meshes
+/// and scenes. Borders of sections depend neither on the view, nor on the distance, nor on normal
+/// maps. The creases themselves are those of the camera's [`Outlines`](crate::Outlines).
 ///
-/// A mesh is divided once, in a background task, from its positions: normals do not count.
-/// Until then, and for meshes that the main world does not keep
+/// A mesh is divided once, in a background task (see [`MeshTasks`]), from its positions: normals do
+/// not count. Until then, and for meshes that the main world does not keep
 /// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)), only normals are used; the latter
 /// is logged. A mesh that changes in every frame never has sections. Skinned and morphed
 /// meshes have the sections of their rest pose. Parts of a mesh that only touch or pass
@@ -83,7 +82,7 @@ pub struct MeshSections {
 }
 
 impl MeshSections {
-    /// No sections, also if a camera has [`CreaseSource::Both`](crate::lines::CreaseSource::Both).
+    /// No sections, whatever the [`CreaseSource`](crate::lines::CreaseSource) of cameras is.
     pub const NONE: Self = Self { angle: 180.0 };
 
     /// The settings that are used.
@@ -99,6 +98,19 @@ impl Default for MeshSections {
     fn default() -> Self {
         Self { angle: 50.0 }
     }
+}
+
+/// When meshes are divided into sections. A resource.
+///
+/// It applies to [`MeshSections`] and to the [`CreaseSource`](crate::lines::CreaseSource) of cameras.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeshTasks {
+    /// In background tasks: the lines along the edges of a mesh appear some frames after it was
+    /// loaded.
+    #[default]
+    Background,
+    /// In the frame in which a mesh is loaded, which takes longer: for pictures and films.
+    Immediate,
 }
 
 /// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
@@ -148,6 +160,8 @@ type Numbers = Vec<u8>;
 pub(super) struct SectionTasks {
     waiting: HashSet<SectionKey>,
     running: HashMap<SectionKey, Task<Numbers>>,
+    /// What is known, but not in the tables.
+    done: Vec<(SectionKey, Numbers)>,
     /// Those that have no triangles, cannot be read, or change all the time.
     failed: HashSet<SectionKey>,
     /// How often those that were found have changed.
@@ -237,7 +251,7 @@ pub(super) fn divide_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut tasks: ResMut<SectionTasks>,
     mut tables: ResMut<SectionTables>,
-    mut styles: ResMut<ObjectStyles>,
+    (mut styles, when): (ResMut<ObjectStyles>, Res<MeshTasks>),
 ) {
     let changed = divided.update(!tables.is_unused());
     if changed.is_empty() && tables.is_unused() {
@@ -245,10 +259,14 @@ pub(super) fn divide_meshes(
         return;
     }
     if !tasks.supported {
-        if changed.iter().any(|entity| divided.of(*entity).is_some()) {
+        let asked = |entity: &Entity| {
+            let sections = divided.of(*entity);
+            sections.is_some_and(|(key, _)| key.origin == Origin::Asked)
+        };
+        if changed.iter().any(asked) {
             warn_once!(
-                "`MeshSections` and `CreaseSource::Both` do nothing: the device does not support \
-                 the feature PRIMITIVE_INDEX"
+                "`MeshSections` does nothing: the device does not support the feature \
+                 PRIMITIVE_INDEX"
             );
         }
         return;
@@ -270,7 +288,7 @@ pub(super) fn divide_meshes(
         }
         tasks.waiting.extend(new);
     }
-    tasks.start(&meshes);
+    tasks.start(&meshes, *when);
     for (key, numbers) in tasks.finished() {
         tables.add(key, &numbers);
     }
@@ -301,9 +319,9 @@ impl SectionTasks {
         self.failed.remove(&key);
     }
 
-    /// Begins to divide the meshes that are loaded.
-    fn start(&mut self, meshes: &Assets<Mesh>) {
-        let (running, failed) = (&mut self.running, &mut self.failed);
+    /// Begins to divide the meshes that are loaded, or divides them.
+    fn start(&mut self, meshes: &Assets<Mesh>, when: MeshTasks) {
+        let (running, failed, done) = (&mut self.running, &mut self.failed, &mut self.done);
         let mut unread = Vec::new();
         self.waiting.retain(|key| {
             if running.len() >= MOST_TASKS {
@@ -312,13 +330,16 @@ impl SectionTasks {
             let Some(mesh) = meshes.get(key.mesh) else {
                 return true;
             };
-            match Surface::new(mesh) {
+            let (angle, origin) = (key.angle(), key.origin);
+            match Surface::new(mesh, origin) {
+                Ok(Some(surface)) if when == MeshTasks::Immediate => {
+                    done.push((*key, surface.divide(angle, origin)));
+                }
                 Ok(Some(surface)) => {
-                    let (angle, origin) = (key.angle(), key.origin);
                     let divide = async move { surface.divide(angle, origin) };
                     running.insert(*key, AsyncComputeTaskPool::get().spawn(divide));
                 }
-                // No triangles: no sections.
+                // No triangles, or too many: no sections.
                 Ok(None) => {
                     failed.insert(*key);
                 }
@@ -336,27 +357,29 @@ impl SectionTasks {
         }
         if let Some((key, error)) = of(Origin::Found).next() {
             let mesh = key.mesh;
-            warn_once!(
-                "`CreaseSource::Both`: some meshes have creases of normals alone, because the main \
-                 world cannot read them; the first is {mesh}: {error}"
+            info_once!(
+                "some meshes have no creases at their edges, because the main world cannot read \
+                 them; the first is {mesh}: {error}"
             );
         }
     }
 
     /// Takes the results of the tasks that are done.
     fn finished(&mut self) -> Vec<(SectionKey, Numbers)> {
-        let mut done = Vec::new();
+        let mut done = std::mem::take(&mut self.done);
         self.running.retain(|key, task| {
             let result = block_on(future::poll_once(task));
             let is_running = result.is_none();
-            match result {
-                // Too many parts: no sections.
-                Some(numbers) if numbers.is_empty() => {
-                    self.failed.insert(*key);
-                }
-                result => done.extend(result.map(|numbers| (*key, numbers))),
-            }
+            done.extend(result.map(|numbers| (*key, numbers)));
             is_running
+        });
+        // Too many parts: no sections.
+        let failed = &mut self.failed;
+        done.retain(|(key, numbers)| {
+            if numbers.is_empty() {
+                failed.insert(*key);
+            }
+            !numbers.is_empty()
         });
         done
     }
@@ -366,6 +389,7 @@ pub(super) fn build(app: &mut App) {
     app.register_type::<MeshSections>()
         .init_resource::<SectionTasks>()
         .init_resource::<SectionTables>()
+        .init_resource::<MeshTasks>()
         .init_resource::<AllMeshes>();
     watch::<MeshSections>(app);
     app.add_systems(

@@ -20,7 +20,7 @@ use bevy::{
 
 use super::{
     super::{changes::ChangedObjects, shared::Shared},
-    EntitySections, SectionKey,
+    EntitySections, Origin, SectionKey,
 };
 use crate::gpu::Table;
 
@@ -149,7 +149,12 @@ impl SectionTables {
             let words = self.divisions.get(key)?.words.as_ref()?;
             let shift = shift.map_or(0, |shift| u32::from(shift) + 1);
             // Beyond 64 million triangles, meshes have no sections.
-            (words.end < 1 << 24).then_some(words.start as u32 | shift << 24)
+            let found = if key.origin == Origin::Found {
+                FOUND
+            } else {
+                0
+            };
+            (words.end < 1 << 24).then_some(words.start as u32 | shift << 24 | found)
         });
         self.starts.set(entity, start);
     }
@@ -167,14 +172,24 @@ fn word(bytes: &[u8]) -> u32 {
     u32::from_le_bytes(bytes)
 }
 
-/// For each mesh with sections, bits 0 to 23 are its first word. Bits 24 to 31 are 0, or for a mesh
-/// that shares its id with others 1 more than what its numbers are shifted by.
+/// The bit of the start of sections that were found without being asked for.
+const FOUND: u32 = 1 << 31;
+
+/// For each mesh with sections, bits 0 to 23 are its first word. Bits 24 to 30 are 0, or for a mesh
+/// that shares its id with others 1 more than what its numbers are shifted by. Bit 31: see [`FOUND`].
 #[derive(Resource, Default)]
 pub(crate) struct SectionStarts(Shared<u32>);
 
 impl SectionStarts {
     pub fn get(&self, mesh: Entity) -> Option<u32> {
         self.0.get(mesh).copied()
+    }
+
+    /// Whether a mesh is drawn with sections. `masked`: only parts of its triangles are seen, so
+    /// that their edges are no creases unless they were asked for.
+    pub fn draws(&self, mesh: Entity, masked: bool) -> bool {
+        self.get(mesh)
+            .is_some_and(|start| !masked || start & FOUND == 0)
     }
 }
 
@@ -225,7 +240,7 @@ pub(crate) fn prepare_sections(
 mod tests {
     use bevy::{asset::uuid::Uuid, platform::collections::HashSet};
 
-    use super::{super::Origin, *};
+    use super::*;
 
     /// After any changes, every entity whose mesh is divided names the words of that mesh, at most
     /// about half of all words are unused, and only starts that have to are written.
@@ -277,7 +292,10 @@ mod tests {
                 let numbers = divided.get(key);
                 assert_eq!(start.is_some(), numbers.is_some(), "round {round}");
                 if let (Some(start), Some(numbers)) = (start, numbers) {
-                    assert_eq!(start >> 24, shift.map_or(0, |shift| u32::from(shift) + 1));
+                    assert_eq!(
+                        start >> 24 & 127,
+                        shift.map_or(0, |shift| u32::from(shift) + 1)
+                    );
                     let words = &tables.words[start as usize & 0xff_ffff..];
                     let packed: Vec<u32> = numbers.chunks(4).map(word).collect();
                     assert_eq!(words[..packed.len()], packed, "round {round}");

@@ -1,6 +1,7 @@
 //! The rules of cracks on random pictures, in the fragment shader, which is run as a function.
 //! `cracks.rs` compares the compute passes, which share the rules, on models.
 
+use bevy_comics::lines::CreaseSource;
 use bevy_comics_testkit::{
     reference::{crack::crack, map::Projection, view::View},
     wgsl::without_stage,
@@ -56,8 +57,10 @@ fn settings(s: &Outlines) -> String {
          line_pass.settings.scale = 1.0;
          line_pass.settings.reference_factor = 1.0;
          line_pass.settings.jump = {:?};
+         line_pass.settings.found_sections = {}u;
          line_pass.settings.ink_part = 1.0;",
-        silhouettes.threshold
+        silhouettes.threshold,
+        u32::from(creases.source != CreaseSource::Normals)
     )
 }
 
@@ -194,13 +197,16 @@ fn assert_matches_the_reference(
     names: &[&str],
 ) -> [u32; 3] {
     let definitions: Vec<Definition> = names.iter().map(|name| (*name, None)).collect();
-    let surfaces = names.contains(&"NORMALS");
+    let surfaces = names.contains(&"OBJECT_IDS");
     let depths = floats(Picture::SIZE, &picture.depths);
     let normals = gpu().texture(Picture::SIZE, &picture.normals);
     let objects = pairs(Picture::SIZE, &picture.ids.pixels);
     let mut entries = vec![texture(2, &depths)];
+    if names.contains(&"NORMALS") {
+        entries.push(texture(7, &normals));
+    }
     if surfaces {
-        entries.extend([texture(7, &normals), texture(8, &objects)]);
+        entries.push(texture(8, &objects));
     }
     let source = without_stage(&shader("lines/find/find.wgsl"));
     let body = settings(outlines) + FOUND;
@@ -249,10 +255,27 @@ fn cracks_of_fragments_match_the_reference() {
         "OBJECT_EDGES",
         "SECTIONS",
     ];
-    for _ in 0..3 {
+    for source in [
+        CreaseSource::Normals,
+        CreaseSource::Meshes,
+        CreaseSource::Both,
+    ] {
         let picture = Picture::new(&mut n);
+        let creases = Creases {
+            source,
+            ..Creases::default()
+        };
+        let all = Outlines {
+            creases: Some(creases),
+            ..all
+        };
+        let without = source == CreaseSource::Meshes;
+        let names = names.into_iter().filter(|n| !(without && *n == "NORMALS"));
+        let names: Vec<&str> = names.collect();
         let kinds = assert_matches_the_reference(&picture, &all, &names);
-        assert!(kinds.iter().all(|count| *count > 50), "{kinds:?}");
+        // Without normals, few borders of these pictures are confirmed.
+        let least = [50, if without { 5 } else { 50 }, 50];
+        assert!(kinds.iter().zip(least).all(|(k, l)| *k > l), "{kinds:?}");
         let [count, ..] = assert_matches_the_reference(&picture, &silhouettes, &names[..3]);
         assert!(count > 50, "{count}");
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, Desaturation, IsoLines, Outlines, ToneBands,
-    lines::{LineBoil, LineColor, LineWeight},
+    lines::{CreaseSource, Creases, LineBoil, LineColor, LineWeight},
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::{RgbaImage, imageops};
@@ -155,6 +155,13 @@ fn weights() -> Vec<Strip> {
         width: 3.0,
         ..plain
     };
+    let normals = Outlines {
+        creases: Some(Creases {
+            source: CreaseSource::Normals,
+            ..default()
+        }),
+        ..plain
+    };
     let hold = Outlines {
         width: 3.0,
         color: LineColor::SURFACE,
@@ -168,8 +175,7 @@ fn weights() -> Vec<Strip> {
         Strip::new("widths", Teapot, Turntable, wide).on(stages::widths),
         Strip::new("boil", Theatre, Turntable, boil),
         Strip::new("surface", Village, Walk, hold),
-        Strip::new("sections", Village, Walk, plain).on(stages::sections),
-        Strip::new("no-sections", Village, Walk, plain),
+        Strip::new("normals", Village, Walk, normals),
         Strip::new("fog", Village, Walk, plain).on(stages::fog),
     ]
 }

@@ -8,13 +8,9 @@ use bevy::{
 };
 use bevy_comics::{
     NoStyle, SelectionOutline, XRayOutline,
-    objects::{DepthWrite, LineWidths, MeshSections},
+    objects::{DepthWrite, LineWidths},
 };
-use bevy_comics_testkit::{
-    forest,
-    specimens::Specimen,
-    studio::{Studio, set_sections},
-};
+use bevy_comics_testkit::{forest, specimens::Specimen, studio::Studio};
 
 /// The camera draws with temporal anti-aliasing.
 pub fn jitter(studio: &mut Studio) {
@@ -75,13 +71,6 @@ pub fn unstyle_one(studio: &mut Studio) {
     if let Some(mesh) = nearest(world, target) {
         world.entity_mut(mesh).insert(NoStyle::default());
     }
-}
-
-/// All meshes are in sections.
-pub fn sections(studio: &mut Studio) {
-    set_sections(studio.headless.app.world_mut(), MeshSections::default());
-    // They are divided in the background.
-    studio.headless.step(30);
 }
 
 /// A fog that begins near the camera.

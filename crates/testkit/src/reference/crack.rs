@@ -2,7 +2,7 @@
 
 use super::{
     edge::{
-        Normal, departure, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge,
+        Normal, departures, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge,
         step_excess, step_response,
     },
     map::is_background,
@@ -12,7 +12,7 @@ use super::{
 use bevy_comics::{
     Outlines,
     effects::Equations,
-    lines::{LineEdge, LineResponse},
+    lines::{CreaseSource, LineEdge, LineResponse},
 };
 
 /// The border between a pixel and its neighbour to the east or south.
@@ -123,13 +123,13 @@ pub fn stored_width(half_width: f64) -> f64 {
 }
 
 /// Whether two sections of an object meet there, and whether one of them has no creases.
-/// Unless one of them was asked for (64 to 127), the surface must also bend by 10 degrees, or have
-/// a step.
+/// Unless one of them was asked for (64 to 127), pixels must have `evidence`. Those that were found (1 to 63, and in groups 128 to 190) count only if the lines have
+/// the edges of all meshes.
 fn sections(
     view: &View,
     pixel: [i64; 2],
     v: [i64; 2],
-    (fold, has_step): (Option<f64>, bool),
+    (source, evidence): (CreaseSource, bool),
 ) -> (bool, bool) {
     let Some(ids) = view.ids else {
         return (false, false);
@@ -139,13 +139,17 @@ fn sections(
         (id, marks >> 8)
     });
     let [(id, here), (other, there)] = [at[2], at[3]];
-    let bent = fold.unwrap_or(0.0) > (2.0 * 5f64.to_radians().sin()).powi(2);
+    let silent = here == 255 || there == 255;
+    let [here, there] = [here, there].map(|section| match section {
+        1..64 | 128..191 if source == CreaseSource::Normals => 0,
+        section => section,
+    });
     let asked = [here, there]
         .iter()
         .any(|section| (64..128).contains(section));
-    let ends = asked || bent || has_step;
+    let ends = asked || evidence;
     let border = here != there && here != 0 && there != 0 && id == other && ends;
-    (border, here == 255 || there == 255)
+    (border, silent)
 }
 
 /// Whether a hard line between two surfaces of which none hides the other belongs to the pixel,
@@ -207,15 +211,25 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         }
     }
     if let Some(k) = creases {
-        let normals = along(view, pixel, v, |x, y| normal(view, x, y));
+        let without = k.source == CreaseSource::Meshes && s.edge != LineEdge::Hard;
+        let normals = along(view, pixel, v, |x, y| {
+            normal(view, x, y).filter(|_| !without)
+        });
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        let (border, silent) = sections(
-            view,
-            pixel,
-            v,
-            (folds[1], departure(depths) > 2e-5 * reference),
-        );
+        let [step, beside, turn] = departures(depths).map(|depth| depth / reference);
+        let has_line = silhouettes.is_some_and(|k| {
+            let p = step_response(beside, 0.5 * f64::from(k.threshold));
+            is_stored(ink(k.edge_limit, k.softness, weakest(s), p))
+        });
+        let bends = if without {
+            turn > 5e-5
+        } else {
+            folds[1].unwrap_or(0.0) > (2.0 * 5f64.to_radians().sin()).powi(2)
+        };
+        let evidence =
+            bends || step > 2e-5 || (beside > 2e-5 && beside * reference < jump && !has_line);
+        let (border, silent) = sections(view, pixel, v, (k.source, evidence));
         let p = if border {
             1.0
         } else {

@@ -12,7 +12,9 @@ fn divided(mesh: &Mesh, angle: f32) -> Vec<u8> {
 }
 
 fn divided_by(mesh: &Mesh, angle: f32, origin: Origin) -> Vec<u8> {
-    let surface = Surface::new(mesh).expect("readable").expect("triangles");
+    let surface = Surface::new(mesh, origin)
+        .expect("readable")
+        .expect("triangles");
     surface.divide(angle, origin)
 }
 
@@ -103,7 +105,11 @@ fn broken_meshes_do_no_harm() {
     assert!(all(&[], None).is_empty());
     assert!(all(&[[f32::INFINITY; 3], [0.0; 3], [1.0, 0.0, 0.0]], None).len() == 1);
     let points = Mesh::new(PrimitiveTopology::PointList, RenderAssetUsages::default());
-    assert!(Surface::new(&points).expect("readable").is_none());
+    assert!(
+        Surface::new(&points, Origin::Asked)
+            .expect("readable")
+            .is_none()
+    );
 }
 
 /// The author's numbers: 0 is silent, others follow those that are found, and wrap around.

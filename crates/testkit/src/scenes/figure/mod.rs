@@ -9,7 +9,7 @@ pub mod motion;
 mod shading;
 
 use bevy::{light::NotShadowCaster, prelude::*};
-use bevy_comics::{OutlineGroup, toon::MaterialName};
+use bevy_comics::{OutlineGroup, objects::MeshSections, toon::MaterialName};
 
 use super::{
     ScenePart, Stage, ToonPart, Vantage, shadows_within, shape::Shape, sky::Sky, sunlight,
@@ -80,6 +80,10 @@ impl<'a, 'w, 's> Workshop<'a, 'w, 's> {
         let painted = self.put(surface, paint.name, paint.shape);
         let mut painted = self.stage.commands.entity(painted);
         painted.insert(NotShadowCaster);
+        if paint.name == "blush" {
+            // A flush has no outline.
+            painted.insert(MeshSections::NONE);
+        }
         match lids {
             Some(Lids::Closed) => painted.insert((Lids::Closed, Visibility::Hidden)),
             Some(lids) => painted.insert(lids),
