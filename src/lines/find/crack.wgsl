@@ -165,14 +165,14 @@ fn sections_of(s: Lines, marks: vec4<u32>) -> vec4<u32> {
 
 // Whether the surface has a step at the next crack. In a multisampled view, the depth of a pixel may
 // be that of another sample than its section, see resolve.wgsl. A step that separates two surfaces, or
-// has a silhouette, has its line.
+// has a silhouette that is certain, has its line.
 fn has_step_beside(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
     let beside = at.departs.beside;
     let has_step = (beside > STEP * reference) & (beside < s.jump * reference);
 #ifdef SILHOUETTES
     let response = step_response(beside, s.silhouette_k * reference);
     let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
-    return has_step & (byte(ink) == vec4(0u));
+    return has_step & ((byte(ink) == vec4(0u)) | (response < vec4(s.silhouette_limit)));
 #else
     return has_step;
 #endif

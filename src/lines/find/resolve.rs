@@ -46,7 +46,7 @@ pub(crate) struct ResolveKey {
 
 impl ResolveKey {
     pub fn new(key: LineKey, samples: u32) -> Self {
-        let normals = LineKey::CREASES | LineKey::FAITHFUL_CREASES | LineKey::LIGHT_WEIGHT;
+        let normals = LineKey::NORMALS | LineKey::FAITHFUL_CREASES | LineKey::LIGHT_WEIGHT;
         Self {
             samples,
             oblique: key.contains(LineKey::OBLIQUE),

@@ -220,7 +220,8 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let [step, beside, turn] = departures(depths).map(|depth| depth / reference);
         let has_line = silhouettes.is_some_and(|k| {
             let p = step_response(beside, 0.5 * f64::from(k.threshold));
-            is_stored(ink(k.edge_limit, k.softness, weakest(s), p))
+            let inked = is_stored(ink(k.edge_limit, k.softness, weakest(s), p));
+            inked && is_certain(p, k.edge_limit)
         });
         let bends = if without {
             turn > 5e-5
