@@ -14,6 +14,8 @@ mod warnings;
 
 use std::sync::Arc;
 
+#[cfg(feature = "objects")]
+use bevy::ecs::{change_detection::DetectChangesMut, system::ResMut};
 use bevy::{
     app::{App, Last, Plugin},
     camera::Camera3d,
@@ -33,6 +35,8 @@ use bevy::{
     window::PrimaryWindow,
 };
 
+#[cfg(feature = "objects")]
+use crate::objects::EdgesPlanned;
 use crate::{
     animation::Impacts,
     depth::MaterialsReadRange,
@@ -82,6 +86,8 @@ impl Plugin for CameraPlugin {
                     (warn_unsupported, warn_of_pairs),
                 ),
             );
+        #[cfg(feature = "objects")]
+        app.add_systems(Last, note_edges.after(ComicsSystems::Plan));
     }
 }
 
@@ -94,6 +100,15 @@ impl CameraPlugin {
         #[cfg(any(feature = "objects", feature = "toon"))]
         mirror::build_render(app);
     }
+}
+
+/// Notes whether some lines have creases at the edges of all meshes.
+#[cfg(feature = "objects")]
+fn note_edges(plans: Query<&CameraPlan>, mut edges: ResMut<EdgesPlanned>) {
+    let lines = plans.iter().filter_map(|camera| camera.plan.lines);
+    edges.set_if_neq(EdgesPlanned(
+        lines.into_iter().any(|lines| lines.divides_meshes()),
+    ));
 }
 
 fn plan_cameras(

@@ -27,6 +27,7 @@ impl Plan {
         if lacks.object_ids {
             self.without(Input::ObjectIds)
         } else {
+            self.resolve();
             self
         }
     }
@@ -80,5 +81,42 @@ impl Plan {
         }
         plan.resolve();
         plan
+    }
+}
+
+#[cfg(all(test, feature = "objects"))]
+mod tests {
+    use bevy::ecs::world::World;
+
+    use super::*;
+    use crate::{
+        effect::EffectRegistry,
+        lines::{CreaseSource, Creases, Outlines},
+        objects::ObjectChanges,
+    };
+
+    /// Creases at the edges of meshes need triangles with numbers; elsewhere they are found in normals.
+    #[test]
+    fn creases_are_those_of_normals_where_triangles_have_no_numbers() {
+        let creases = Creases {
+            source: CreaseSource::Meshes,
+            ..Creases::default()
+        };
+        let mut world = World::new();
+        let camera = world.spawn(Outlines {
+            creases: Some(creases),
+            ..Outlines::default()
+        });
+        let camera = camera.id();
+        let types = EffectRegistry::built_in().types();
+        for primitive_index in [false, true] {
+            let lacks = DeviceLacks {
+                primitive_index,
+                ..DeviceLacks::default()
+            };
+            let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
+            let plan = plan.expect("outlines").on_device(lacks);
+            assert_eq!(plan.needs_normals(), primitive_index);
+        }
     }
 }

@@ -47,6 +47,8 @@ pub(crate) struct Plan {
     pub object_styles: bool,
     /// Some mesh is divided into sections, and their borders are creases.
     pub sections: bool,
+    /// Some mesh is divided because it has `MeshSections`.
+    pub asked_sections: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub vertex_widths: bool,
     /// The colour effects leave some object alone.
@@ -97,6 +99,7 @@ impl Plan {
                 .sanitized(),
             object_styles: objects.any,
             sections: objects.sections,
+            asked_sections: objects.asked_sections,
             vertex_widths: objects.widths,
             unstyled: objects.unstyled,
             anchored: objects.anchored,
@@ -244,7 +247,10 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
-        self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
+        let asked = self.asked_sections;
+        self.sections &= self
+            .lines
+            .is_some_and(|lines| lines.divides_meshes() || (asked && lines.has_measured_creases()));
         self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);

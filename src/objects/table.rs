@@ -65,6 +65,8 @@ pub(crate) struct ObjectStyles {
     users: Users,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// Some mesh is divided because it has `MeshSections`.
+    pub asked_sections: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
     pub marks: bool,
     /// The vertices of some mesh say how wide its lines are.
@@ -72,6 +74,12 @@ pub(crate) struct ObjectStyles {
     /// Some mesh fades at some distance.
     pub fades: bool,
 }
+
+/// Whether the lines of some camera, as planned in the last frame, have creases at the edges of all
+/// meshes.
+#[cfg(feature = "objects")]
+#[derive(Resource, Default, PartialEq)]
+pub(crate) struct EdgesPlanned(pub bool);
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
 #[cfg(feature = "objects")]
@@ -97,8 +105,9 @@ pub(crate) struct DepthWrites {
 pub(crate) struct ObjectChanges {
     /// Some object has its own line style, or no lines, or [`UNSTYLED`].
     pub any: bool,
-    /// Some mesh is divided into sections.
+    /// Some mesh is divided into sections, and some because it has `MeshSections`.
     pub sections: bool,
+    pub asked_sections: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub widths: bool,
     /// The colour effects leave some object alone.
@@ -124,6 +133,7 @@ impl ObjectStyles {
         ObjectChanges {
             any: self.any(),
             sections: self.sections,
+            asked_sections: self.asked_sections,
             widths: self.widths,
             unstyled,
             marks: self.marks,

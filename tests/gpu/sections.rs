@@ -180,7 +180,11 @@ fn cameras_choose_what_creases_are_found_by() {
     small.empty_view(Msaa::Off, Color::WHITE);
     let turned = Quat::from_rotation_y(0.7);
     let at = Transform::from_xyz(0.3, 0.2, -6.0).with_rotation(turned);
-    small.put(facade(0.05), unlit(Color::WHITE), at);
+    let house = small.put(facade(0.05), unlit(Color::WHITE), at);
+    // A mesh with sections of its own, so that the pass of ids draws those of the house too.
+    let aside = Transform::from_xyz(-3.5, -2.5, -6.0);
+    let asked = small.put(Cuboid::from_length(0.5), unlit(Color::WHITE), aside);
+    small.on(asked).insert(MeshSections::default());
     let alone = ink(&mut small, creases());
     let inactive = Camera {
         is_active: false,
@@ -188,14 +192,27 @@ fn cameras_choose_what_creases_are_found_by() {
     };
     let other = (Object, Camera3d::default(), inactive, everywhere());
     let other = small.world().spawn(other).id();
-    wait(&mut small, some_has_sections);
     assert_eq!(ink(&mut small, creases()), alone);
+    let numbers = small.object_ids().expect("ids").pixels;
+    let found = |[_, marks]: &[u32; 2]| (1..64).contains(&section(*marks));
+    assert!(numbers.iter().any(found), "the house has sections");
     let both = ink(&mut small, creases_of(Both));
     assert!(both > alone + 10.0, "{both}, {alone}");
+    // Triangles of which only parts are seen have no edges.
+    let masked = StandardMaterial {
+        alpha_mode: AlphaMode::Mask(0.5),
+        ..unlit(Color::WHITE)
+    };
+    let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
+    let masked = materials.add(masked);
+    small.on(house).insert(MeshMaterial3d(masked));
+    assert_eq!(ink(&mut small, creases_of(Both)), alone);
     small.world().despawn(other);
     // The samples of a pixel are resolved without normals too.
     small.empty_view(Msaa::Sample4, Color::WHITE);
     small.put(facade(0.05), unlit(Color::WHITE), at);
+    let asked = small.put(Cuboid::from_length(0.5), unlit(Color::WHITE), aside);
+    small.on(asked).insert(MeshSections::default());
     let sampled = ink(&mut small, creases_of(Meshes));
     assert!((sampled / both - 1.0).abs() < 0.1, "{sampled}, {both}");
     assert_eq!(small.errors(), 0);

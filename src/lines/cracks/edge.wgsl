@@ -44,7 +44,8 @@ struct Lines {
     surface_saturate: f32,
     // 1 where borders of sections that were found in all meshes count; otherwise 0.
     found_sections: u32,
-    unused_x: f32,
+    // 1 where folds of normals are creases; otherwise 0.
+    normal_creases: u32,
     unused_y: f32,
 }
 

@@ -205,9 +205,10 @@ fn are_silent(at: Borders) -> vec4<bool> {
 // A crease is no silhouette, and both sides meet there: no jump in depth separates them.
 fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here: vec4<u32>, there: vec4<u32>) -> Found {
     var found = before;
+    let by_normals = vec4(s.normal_creases != 0u);
     var response = fold_response(at.folds * response_factors(at), s.crease_k);
-    var ridge = at.ridge;
-    var rim = at.rim;
+    var ridge = at.ridge & by_normals;
+    var rim = at.rim & by_normals;
     var free = found.kinds == vec4(0u);
 #ifdef SECTIONS
     let border = section_borders(s, at, reference);

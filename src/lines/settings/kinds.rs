@@ -88,8 +88,8 @@ impl Default for Silhouettes {
     }
 }
 
-/// Outlines where a surface bends sharply. The normal prepass, which they are found
-/// in, is added to the camera. Decaudin's creases, which \[CL\] leaves out.
+/// Outlines where a surface bends sharply. The normal prepass is added to the camera if
+/// they are found in it, see [`CreaseSource`]. Decaudin's creases, which \[CL\] leaves out.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -105,7 +105,8 @@ pub struct Creases {
     pub source: CreaseSource,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
-    /// which the response is 1. Range 3 to 180, default 40. Faithful: `k_p` of
+    /// which the response is 1. Range 3 to 180, default 40. Of normals only: at the edges of
+    /// meshes it is 50 degrees, or that of their `MeshSections`. Faithful: `k_p` of
     /// \[CL\] Eq. 2 is the sine of half of the angle.
     #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,
@@ -148,7 +149,8 @@ pub enum CreaseSource {
     /// [`MeshSections`](crate::objects::MeshSections).
     Normals,
     /// At the edges of meshes. Normals are not read, so normal maps have no creases, and the camera
-    /// needs no normal prepass. Meshes that are left out have no creases.
+    /// needs no normal prepass (but for [`LineEdge::Hard`], which chooses its side by normals). Meshes
+    /// that are left out have no creases.
     Meshes,
     /// In the normals of pixels, and at the edges of meshes.
     #[default]

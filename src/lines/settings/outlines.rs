@@ -435,7 +435,7 @@ impl Outlines {
             surface_darken,
             surface_saturate,
             found_sections: u32::from(self.divides_meshes()),
-            unused_x: 0.0,
+            normal_creases: u32::from(c.source != CreaseSource::Meshes),
             unused_y: 0.0,
         }
     }
@@ -472,7 +472,7 @@ pub(crate) struct LinesUniform {
     surface_darken: f32,
     surface_saturate: f32,
     found_sections: u32,
-    unused_x: f32,
+    normal_creases: u32,
     unused_y: f32,
 }
 

@@ -36,14 +36,20 @@ pub(super) struct Surface {
     own: Option<Vec<u32>>,
 }
 
+/// How many indices a mesh has, or vertices without indices; 0 if they cannot be read.
+pub(super) fn indices_of(mesh: &Mesh) -> usize {
+    match mesh.try_indices_option() {
+        Ok(Some(indices)) => indices.len(),
+        Ok(None) => mesh.count_vertices(),
+        Err(_) => 0,
+    }
+}
+
 impl Surface {
     /// `None` for a mesh without triangles, and for one that has too many of them to be divided
     /// unless it was asked for.
     pub fn new(mesh: &Mesh, origin: Origin) -> Result<Option<Self>, MeshAccessError> {
-        let corners = mesh
-            .try_indices_option()?
-            .map_or(mesh.count_vertices(), Indices::len);
-        if origin == Origin::Found && corners > 3 * MOST_TRIANGLES {
+        if origin == Origin::Found && indices_of(mesh) > 3 * MOST_TRIANGLES {
             return Ok(None);
         }
         let Some(VertexAttributeValues::Float32x3(positions)) =

@@ -35,7 +35,7 @@ use super::{
     components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
     inherit::{Inherit, Inherited, watch},
-    table::ObjectStyles,
+    table::{EdgesPlanned, ObjectStyles},
 };
 use crate::{
     lines::Outlines,
@@ -56,8 +56,8 @@ pub(crate) use table::{
 ///
 /// A mesh is divided once, in a background task (see [`MeshTasks`]), from its positions: normals do
 /// not count. Until then, and for meshes that the main world does not keep
-/// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)), only normals are used; the latter
-/// is logged. A mesh that changes in every frame never has sections. Skinned and morphed
+/// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)), there are no such borders; the latter
+/// is logged. A mesh that changes is divided again; one that changes in every frame has none. Skinned and morphed
 /// meshes have the sections of their rest pose. Parts of a mesh that only touch or pass
 /// through each other are sections too.
 ///
@@ -116,7 +116,9 @@ pub enum MeshTasks {
 /// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
 /// vertex of a triangle decides. Two numbers that differ by a multiple of 64 are the same
 /// section; at a triangle of section 0 there are no creases at all. The loader of a glTF file
-/// must be told about attributes of its own (`GltfPlugin::add_custom_vertex_attribute`).
+/// must be told about attributes of its own (`GltfPlugin::add_custom_vertex_attribute`). If such a
+/// mesh is divided, because it has [`MeshSections`] or a camera asks for the edges of all meshes, its
+/// sections count for all cameras.
 pub const ATTRIBUTE_MESH_SECTION: MeshVertexAttribute =
     MeshVertexAttribute::new("MeshSection", 0x636f_6d69_6373, VertexFormat::Uint32);
 
@@ -170,13 +172,18 @@ pub(super) struct SectionTasks {
     supported: bool,
 }
 
-/// Whether a camera asks for the edges of all meshes.
+/// Whether a camera asks for the edges of all meshes, by its `Outlines` or by another effect that
+/// has lines.
 #[derive(Resource, Default, PartialEq)]
 pub(super) struct AllMeshes(bool);
 
 /// Notes it. A style that is faded out for a while still asks.
-fn ask_for_edges(cameras: Query<&Outlines, With<Camera3d>>, mut all: ResMut<AllMeshes>) {
-    let asked = cameras.iter().any(Outlines::divides_meshes);
+fn ask_for_edges(
+    cameras: Query<&Outlines, With<Camera3d>>,
+    planned: Res<EdgesPlanned>,
+    mut all: ResMut<AllMeshes>,
+) {
+    let asked = planned.0 || cameras.iter().any(Outlines::divides_meshes);
     all.set_if_neq(AllMeshes(asked));
 }
 
@@ -185,7 +192,9 @@ fn ask_for_edges(cameras: Query<&Outlines, With<Camera3d>>, mut all: ResMut<AllM
 pub(crate) type EntitySections = (SectionKey, Option<u8>);
 
 /// Most meshes that are divided at a time: each is copied for its task.
-const MOST_TASKS: usize = 16;
+const MOST_TASKS: usize = 256;
+/// Indices of meshes after which no other mesh is copied in a frame.
+const MOST_INDICES: usize = 600_000;
 /// Most changes of a mesh without [`MeshSections`] after which it is divided again.
 const MOST_CHANGES: u32 = 3;
 
@@ -202,6 +211,8 @@ pub(super) struct Divided<'w, 's> {
     groups: Res<'w, ObjectGroups>,
     other_mesh: Query<'w, 's, Entity, OtherMesh>,
     removed: RemovedComponents<'w, 's, Mesh3d>,
+    no_longer_skinned: RemovedComponents<'w, 's, SkinnedMesh>,
+    no_longer_morphed: RemovedComponents<'w, 's, MeshMorphWeights>,
 }
 
 impl Inherit for MeshSections {
@@ -214,12 +225,14 @@ impl Divided<'_, '_> {
     /// The entities whose sections may have changed. `used`: some entity has sections.
     fn update(&mut self, used: bool) -> EntityHashSet {
         let mut changed = self.sections.update();
-        let without_mesh = self.removed.read();
+        let removed = self.removed.read();
+        let removed = removed.chain(self.no_longer_skinned.read());
+        let removed = removed.chain(self.no_longer_morphed.read());
         if self.all.is_changed() {
             changed.extend(&self.every_mesh);
         }
         if used || self.all.0 || !changed.is_empty() {
-            changed.extend(self.other_mesh.iter().chain(without_mesh));
+            changed.extend(self.other_mesh.iter().chain(removed));
             if self.groups.is_changed() {
                 changed.extend(self.groups.changed());
             }
@@ -289,12 +302,13 @@ pub(super) fn divide_meshes(
         tasks.waiting.extend(new);
     }
     tasks.start(&meshes, *when);
-    for (key, numbers) in tasks.finished() {
+    for (key, numbers) in tasks.finished(*when) {
         tables.add(key, &numbers);
     }
     tables.pack();
-    if styles.sections != tables.any() {
-        styles.sections = tables.any();
+    let found = [tables.any(), tables.any_asked()];
+    if [styles.sections, styles.asked_sections] != found {
+        [styles.sections, styles.asked_sections] = found;
     }
 }
 
@@ -323,13 +337,16 @@ impl SectionTasks {
     fn start(&mut self, meshes: &Assets<Mesh>, when: MeshTasks) {
         let (running, failed, done) = (&mut self.running, &mut self.failed, &mut self.done);
         let mut unread = Vec::new();
+        let mut indices = 0;
         self.waiting.retain(|key| {
-            if running.len() >= MOST_TASKS {
+            let full = running.len() >= MOST_TASKS || indices >= MOST_INDICES;
+            if full && when == MeshTasks::Background {
                 return true;
             }
             let Some(mesh) = meshes.get(key.mesh) else {
                 return true;
             };
+            indices += divide::indices_of(mesh);
             let (angle, origin) = (key.angle(), key.origin);
             match Surface::new(mesh, origin) {
                 Ok(Some(surface)) if when == MeshTasks::Immediate => {
@@ -364,11 +381,14 @@ impl SectionTasks {
         }
     }
 
-    /// Takes the results of the tasks that are done.
-    fn finished(&mut self) -> Vec<(SectionKey, Numbers)> {
+    /// Takes the results of the tasks that are done, or waits for all.
+    fn finished(&mut self, when: MeshTasks) -> Vec<(SectionKey, Numbers)> {
         let mut done = std::mem::take(&mut self.done);
         self.running.retain(|key, task| {
-            let result = block_on(future::poll_once(task));
+            let result = match when {
+                MeshTasks::Background => block_on(future::poll_once(task)),
+                MeshTasks::Immediate => Some(block_on(task)),
+            };
             let is_running = result.is_none();
             done.extend(result.map(|numbers| (*key, numbers)));
             is_running
@@ -390,7 +410,8 @@ pub(super) fn build(app: &mut App) {
         .init_resource::<SectionTasks>()
         .init_resource::<SectionTables>()
         .init_resource::<MeshTasks>()
-        .init_resource::<AllMeshes>();
+        .init_resource::<AllMeshes>()
+        .init_resource::<EdgesPlanned>();
     watch::<MeshSections>(app);
     app.add_systems(
         PostUpdate,

@@ -28,6 +28,10 @@ use crate::gpu::Table;
 #[derive(Resource, Default)]
 pub(crate) struct SectionTables {
     entities: EntityHashMap<EntitySections>,
+    /// How many of them have [`MeshSections`](super::MeshSections).
+    asked: usize,
+    /// The keys of each mesh.
+    keys: HashMap<AssetId<Mesh>, Vec<SectionKey>>,
     divisions: HashMap<SectionKey, Division>,
     /// The sections of all meshes, four triangles to a word. New ones are added at the end. The
     /// first word belongs to no mesh.
@@ -54,6 +58,11 @@ impl SectionTables {
         !self.starts.is_empty()
     }
 
+    /// Whether any mesh has `MeshSections`.
+    pub fn any_asked(&self) -> bool {
+        self.asked > 0
+    }
+
     pub(super) fn is_unused(&self) -> bool {
         self.entities.is_empty()
     }
@@ -75,9 +84,18 @@ impl SectionTables {
             None => self.entities.remove(&entity),
         };
         let mut keys = [None; 2];
+        // The engine marks the mesh of an entity as changed whenever its material does.
+        if old == new {
+            return keys;
+        }
+        let is_asked = |of: Option<EntitySections>| {
+            usize::from(of.is_some_and(|(key, _)| key.origin == Origin::Asked))
+        };
+        self.asked = self.asked + is_asked(new) - is_asked(old);
         if let Some((key, _)) = new {
             let division = self.divisions.entry(key).or_insert_with(|| {
                 keys[1] = Some(key);
+                self.keys.entry(key.mesh).or_default().push(key);
                 Division::default()
             });
             division.entities.insert(entity);
@@ -89,6 +107,12 @@ impl SectionTables {
             if division.entities.is_empty() {
                 self.forget(key);
                 self.divisions.remove(&key);
+                if let Some(keys) = self.keys.get_mut(&key.mesh) {
+                    keys.retain(|other| *other != key);
+                    if keys.is_empty() {
+                        self.keys.remove(&key.mesh);
+                    }
+                }
                 keys[0] = Some(key);
             }
         }
@@ -161,8 +185,7 @@ impl SectionTables {
 
     /// The keys with this mesh.
     pub(super) fn keys_of(&self, mesh: AssetId<Mesh>) -> Vec<SectionKey> {
-        let keys = self.divisions.keys().copied();
-        keys.filter(|key| key.mesh == mesh).collect()
+        self.keys.get(&mesh).cloned().unwrap_or_default()
     }
 }
 

@@ -58,9 +58,11 @@ fn settings(s: &Outlines) -> String {
          line_pass.settings.reference_factor = 1.0;
          line_pass.settings.jump = {:?};
          line_pass.settings.found_sections = {}u;
+         line_pass.settings.normal_creases = {}u;
          line_pass.settings.ink_part = 1.0;",
         silhouettes.threshold,
-        u32::from(creases.source != CreaseSource::Normals)
+        u32::from(creases.source != CreaseSource::Normals),
+        u32::from(creases.source != CreaseSource::Meshes)
     )
 }
 

@@ -211,7 +211,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         }
     }
     if let Some(k) = creases {
-        let without = k.source == CreaseSource::Meshes && s.edge != LineEdge::Hard;
+        // Hard lines choose their side by normals.
+        let by_edges = k.source == CreaseSource::Meshes;
+        let without = by_edges && s.edge != LineEdge::Hard;
         let normals = along(view, pixel, v, |x, y| {
             normal(view, x, y).filter(|_| !without)
         });
@@ -237,8 +239,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
             fold_response(folds[1], kn)
         };
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
-        let ridge = is_ridge(folds) || border;
-        let drawn = (ridge || is_rim_ridge(folds)) && !silent;
+        let ridge = is_ridge(folds) && !by_edges || border;
+        let rim = is_rim_ridge(folds) && !by_edges;
+        let drawn = (ridge || rim) && !silent;
         let free = !crack.kinds[0] || border && !crack.certain;
         if drawn && excess < jump && is_stored(amount) && free {
             crack.kinds[..2].copy_from_slice(&[false, true]);
