@@ -71,7 +71,6 @@ impl Plan {
                 plan.view = plan.view.filter(|v| !v.reads_ids());
                 plan.lacks.object_ids = true;
                 plan.object_styles = false;
-                plan.sections = false;
                 plan.vertex_widths = false;
                 plan.unstyled = false;
                 plan.anchored = false;

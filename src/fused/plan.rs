@@ -45,10 +45,11 @@ pub(crate) struct Plan {
     pub lines: Option<Outlines>,
     /// Some object has its own line style, or no lines.
     pub object_styles: bool,
-    /// Some mesh is divided into sections, and their borders are creases.
-    pub sections: bool,
-    /// Some mesh is divided because it has `MeshSections`.
+    /// Some mesh is divided into sections, and some because it has `MeshSections`.
+    pub any_sections: bool,
     pub asked_sections: bool,
+    /// Borders of sections are creases.
+    pub sections: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub vertex_widths: bool,
     /// The colour effects leave some object alone.
@@ -98,7 +99,7 @@ impl Plan {
                 .unwrap_or_default()
                 .sanitized(),
             object_styles: objects.any,
-            sections: objects.sections,
+            any_sections: objects.sections,
             asked_sections: objects.asked_sections,
             vertex_widths: objects.widths,
             unstyled: objects.unstyled,
@@ -247,10 +248,7 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
-        let asked = self.asked_sections;
-        self.sections &= self
-            .lines
-            .is_some_and(|lines| lines.divides_meshes() || (asked && lines.has_measured_creases()));
+        self.sections = has_sections && self.has_section_borders();
         self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);
@@ -266,6 +264,16 @@ impl Plan {
         {
             self.view = None;
         }
+    }
+
+    /// Whether the lines are those of a device that can draw sections. If ids are drawn anyway, meshes
+    /// may be divided later: then no pipeline is made anew, and no line is missing meanwhile.
+    fn has_section_borders(&self) -> bool {
+        let Some(lines) = self.lines.filter(Outlines::has_measured_creases) else {
+            return false;
+        };
+        let found = self.any_sections || lines.objects.is_some();
+        self.asked_sections || (found && lines.divides_meshes())
     }
 
     /// Adds the lines that a debug view shows.

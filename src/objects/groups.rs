@@ -100,42 +100,25 @@ pub(crate) struct GroupChanges {
     left: Vec<(Entity, Entity)>,
 }
 
+/// Notes the entities that get another value of a component, or lose it.
+fn note_changes<C: Component>(app: &mut App) {
+    app.add_observer(|on: On<Insert, C>, mut changes: ResMut<GroupChanges>| {
+        changes.subtrees.insert(on.entity);
+    })
+    .add_observer(|on: On<Remove, C>, mut changes: ResMut<GroupChanges>| {
+        changes.subtrees.insert(on.entity);
+    });
+}
+
 /// Registers the components and keeps [`ObjectGroups`] up to date.
 pub(crate) fn build(app: &mut App) {
+    note_changes::<OutlineGroup>(app);
+    note_changes::<SplitPrimitives>(app);
+    note_changes::<Mesh3d>(app);
     app.register_type::<OutlineGroup>()
         .register_type::<SplitPrimitives>()
         .init_resource::<ObjectGroups>()
         .init_resource::<GroupChanges>()
-        .add_observer(
-            |on: On<Insert, OutlineGroup>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, OutlineGroup>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Insert, SplitPrimitives>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, SplitPrimitives>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Insert, Mesh3d>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, Mesh3d>, mut changes: ResMut<GroupChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
         .add_observer(
             |on: On<Insert, ChildOf>, mut changes: ResMut<GroupChanges>| {
                 changes.subtrees.insert(on.entity);

@@ -6,6 +6,7 @@ mod fog;
 mod kinds;
 mod map_jumps;
 mod outlines;
+mod uniform;
 mod weight;
 
 pub use boil::LineBoil;
@@ -18,5 +19,5 @@ pub use weight::LineWeight;
 
 pub(crate) use boil::BoilUniform;
 pub(crate) use fog::{FogUniform, ViewFog, has_fog};
-pub(crate) use outlines::LinesUniform;
+pub(crate) use uniform::LinesUniform;
 pub(crate) use weight::WeightUniform;

@@ -2,9 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
@@ -12,12 +10,12 @@ use super::{
     boil::LineBoil,
     color::LineColor,
     fog::LineFog,
-    kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes, ramp},
+    kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes},
     weight::LineWeight,
 };
 use crate::{
     lines::modifiers::Sheet,
-    settings::{Equations, FieldRange, linear_rgb},
+    settings::{Equations, FieldRange},
 };
 
 /// Draws outlines: silhouettes, where one surface hides another; creases, where a
@@ -373,134 +371,5 @@ impl Outlines {
         };
         // Without compute shaders, all weights are 1.
         own.max(widest_object) * self.weight.largest(vertex_widths).max(1.0)
-    }
-
-    /// The jump in depth from which one surface hides another, instead of meeting it:
-    /// the threshold of measured silhouettes. That of the faithful equations has another
-    /// meaning.
-    fn jump(&self) -> f32 {
-        let measured = self
-            .silhouettes
-            .filter(|s| s.equations == Equations::Corrected);
-        measured.unwrap_or_default().threshold
-    }
-
-    /// The settings as shaders take them. `scale` is physical pixels per logical
-    /// pixel, `reference` that of `DepthProjection::jump_reference`.
-    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2]) -> LinesUniform {
-        let s = self.silhouettes.unwrap_or_default();
-        let c = self.creases.unwrap_or_default();
-        let o = self.objects.unwrap_or_default();
-        let continues = self.hysteresis > 0.0;
-        // The faithful lines do not know weak edges.
-        let ends = |equations, limit, softness| {
-            let weak = continues && equations == Equations::Corrected;
-            ramp(
-                limit,
-                softness,
-                weak.then_some(self.hysteresis_ratio * limit),
-            )
-        };
-        let [silhouette_low, silhouette_high] = ends(s.equations, s.edge_limit, s.softness);
-        let [crease_low, crease_high] = ends(c.equations, c.edge_limit, c.softness);
-        let [ink_part, width_part] = self.response.parts();
-        let [surface_darken, surface_saturate] = self.color.factors();
-        let limit = |limit| if continues { limit } else { 0.0 };
-        LinesUniform {
-            silhouette_color: linear_rgb(s.color),
-            silhouette_opacity: s.opacity,
-            crease_color: linear_rgb(c.color),
-            crease_opacity: c.opacity,
-            object_color: linear_rgb(o.color),
-            object_opacity: o.opacity,
-            silhouette_low,
-            silhouette_high,
-            silhouette_k: s.k(),
-            silhouette_faithful: u32::from(s.equations == Equations::Faithful),
-            crease_low,
-            crease_high,
-            crease_k: c.k(),
-            crease_faithful: u32::from(c.equations == Equations::Faithful),
-            half_width: 0.5 * self.width * scale,
-            scale,
-            width_fade: self.width_fade,
-            opacity_fade: self.opacity_fade,
-            reference_factor: reference[0],
-            reference_constant: reference[1],
-            jump: self.jump(),
-            ink_part,
-            width_part,
-            silhouette_limit: limit(s.edge_limit),
-            crease_limit: limit(c.edge_limit),
-            surface_darken,
-            surface_saturate,
-            found_sections: u32::from(self.divides_meshes()),
-            normal_creases: u32::from(c.source != CreaseSource::Meshes),
-            unused_y: 0.0,
-        }
-    }
-}
-
-/// `Lines` of `edge.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct LinesUniform {
-    silhouette_color: Vec3,
-    silhouette_opacity: f32,
-    crease_color: Vec3,
-    crease_opacity: f32,
-    object_color: Vec3,
-    object_opacity: f32,
-    silhouette_low: f32,
-    silhouette_high: f32,
-    silhouette_k: f32,
-    silhouette_faithful: u32,
-    crease_low: f32,
-    crease_high: f32,
-    crease_k: f32,
-    crease_faithful: u32,
-    half_width: f32,
-    scale: f32,
-    width_fade: f32,
-    opacity_fade: f32,
-    reference_factor: f32,
-    reference_constant: f32,
-    jump: f32,
-    ink_part: f32,
-    width_part: f32,
-    silhouette_limit: f32,
-    crease_limit: f32,
-    surface_darken: f32,
-    surface_saturate: f32,
-    found_sections: u32,
-    normal_creases: u32,
-    unused_y: f32,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Whether two surfaces meet at a crease does not depend on the form of silhouettes,
-    /// nor on the threshold of the faithful equations.
-    #[test]
-    fn creases_are_the_same_beside_faithful_silhouettes() {
-        let jump = |silhouettes| {
-            let settings = Outlines {
-                silhouettes,
-                creases: Some(Creases::default()),
-                ..Outlines::NONE
-            };
-            settings.uniform(1.0, [1.0, 0.0]).jump
-        };
-        let faithful = |threshold| Silhouettes {
-            equations: Equations::Faithful,
-            threshold,
-            ..Silhouettes::default()
-        };
-        let want = jump(Some(Silhouettes::default()));
-        assert_eq!(jump(None), want);
-        for threshold in [1e-6, 1e-4, 0.5, 1.0] {
-            assert_eq!(jump(Some(faithful(threshold))), want);
-        }
     }
 }
