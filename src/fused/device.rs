@@ -43,7 +43,7 @@ impl DeviceLacks {
             warn_once!(
                 "this device has no compute shaders: visible ranges are not smoothed, locked, \
                  trimmed or taken from other cameras (`RangeOf`), the focus of the middle is not smoothed, borders of depth layers are not found, and lines are drawn without \
-                 hysteresis, closed gaps, ink budget, held frames, weights and fog"
+                 hysteresis, closed gaps, ink budget, held frames, weights, styles of convex and concave edges, and fog"
             );
         }
         if self.object_ids && cfg!(feature = "objects") {

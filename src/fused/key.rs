@@ -59,6 +59,8 @@ pub(crate) struct StylizeKey {
     pub lines: bool,
     /// Lines have the colour of surfaces.
     surface: bool,
+    /// Convex and concave creases differ.
+    edge_styles: bool,
     /// Lines have other colours in near, middle and far.
     pub layer_ink: bool,
     pub object_styles: bool,
@@ -117,7 +119,8 @@ impl StylizeKey {
             depth,
             visible_range: plan.draws_with_range(),
             lines,
-            surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
+            surface: lines && plan.lines.is_some_and(|lines| lines.has_surface_colors()),
+            edge_styles: lines && plan.lines.is_some_and(|lines| lines.has_edge_styles()),
             layer_ink: lines
                 && plan
                     .line_modifiers(facts)
@@ -272,7 +275,7 @@ impl StylizeKey {
 
     /// Whether the pixels that own lines are read.
     pub fn reads_owners(&self) -> bool {
-        self.surface || self.layer_ink
+        self.surface || self.edge_styles || self.layer_ink
     }
 
     pub fn normals(&self) -> bool {
@@ -360,6 +363,7 @@ impl StylizeKey {
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.reads_owners(), "LINE_OWNERS"),
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
+            (self.edge_styles && self.part != Part::Base, "EDGE_STYLES"),
             (self.layer_ink, "IN_LAYERS"),
             (self.layer_ink && self.part != Part::Base, "LAYER_INK"),
             (self.object_styles, "OBJECT_STYLES"),

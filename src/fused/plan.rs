@@ -441,7 +441,7 @@ impl Plan {
 
     pub fn needs_normals(&self) -> bool {
         let lines = self.lines;
-        lines.is_some_and(|lines| lines.finds_by_normals() || lines.weight.reads_normals())
+        lines.is_some_and(|lines| lines.finds_by_normals() || lines.weighs_by_normals())
             || self.needs().contains(Needs::NORMALS)
             // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
             || (self.fades && self.needs_depth())

@@ -44,8 +44,8 @@ use bevy::{
 pub use cracks::ViewCracks;
 pub use modifiers::{LineFade, LineLayers, LineModifiers, LineSimplification, Sheet};
 pub use settings::{
-    CreaseSource, Creases, LineBoil, LineColor, LineEdge, LineFog, LineResponse, LineWeight,
-    MapJumps, ObjectEdges, Outlines, Silhouettes,
+    CreaseSource, Creases, EdgeColor, EdgeStyle, LineBoil, LineColor, LineEdge, LineFog,
+    LineResponse, LineWeight, MapJumps, ObjectEdges, Outlines, Silhouettes,
 };
 
 pub(crate) use key::{ink_entry, owners_entry, range_entry};
@@ -129,6 +129,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "draw/overshoot.wgsl");
     load_shader_library!(app, "link/chain.wgsl");
     load_shader_library!(app, "link/rim.wgsl");
+    load_shader_library!(app, "link/sign.wgsl");
     load_shader_library!(app, "modifiers/sheet.wgsl");
     load_shader_library!(app, "cracks/stored.wgsl");
     embedded_asset!(app, "find/walk.wgsl");

@@ -21,8 +21,8 @@ pub(crate) const COLUMN_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
 /// The ink of a pixel, see `draw.wgsl`.
 pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// How far away the pixel is that owns a pixel's line, see `draw.wgsl`.
-pub(crate) const OWNER_FORMAT: TextureFormat = TextureFormat::Rg8Sint;
+/// How far away the pixel is that owns a pixel's line, and the sign of a crease, see `draw.wgsl`.
+pub(crate) const OWNER_FORMAT: TextureFormat = TextureFormat::Rgba8Sint;
 
 pub(crate) fn texture(
     (textures, device): (&mut TextureCache, &RenderDevice),

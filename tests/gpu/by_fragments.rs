@@ -3,6 +3,7 @@
 //! weight, boil, fog and budget, but otherwise the same. The range is still found by compute
 //! shaders.
 
+use bevy_comics::lines::EdgeStyle;
 use bevy_comics_testkit::{device::gpu, work::along_cracks};
 
 use image::RgbaImage;
@@ -66,7 +67,7 @@ fn outlines(width: f32) -> ComicStyle {
     })
 }
 
-fn check(styles: &[Named]) {
+fn check(styles: &[Named]) -> Studio {
     let [mut with, mut without] = [false, true].map(studio);
     // Both: sketches change with the clock.
     let plain = with.shoot(None);
@@ -74,6 +75,7 @@ fn check(styles: &[Named]) {
     for named in styles {
         assert_same(&mut with, &mut without, &plain, named);
     }
+    without
 }
 
 #[test]
@@ -99,10 +101,21 @@ fn parts_of_lines_without_compute_passes_are_the_same() {
         creases: None,
         ..along_cracks()
     };
-    check(&[
+    // Convex and concave creases have no styles of their own.
+    let signs = Outlines {
+        creases: creases.creases.map(|creases| Creases {
+            convex: Some(EdgeStyle::default()),
+            ..creases
+        }),
+        ..creases
+    };
+    let mut without = check(&[
         ("creases alone", ComicStyle::new().with(creases)),
         ("object edges alone", ComicStyle::new().with(object_edges)),
     ]);
+    let pictures =
+        [creases, signs].map(|lines| without.shoot(Some(&ComicStyle::new().with(lines))));
+    assert!(pictures[0] == pictures[1]);
 }
 
 /// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by

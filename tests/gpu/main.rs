@@ -16,6 +16,7 @@ mod crowds;
 mod default_limits;
 mod depth_layers;
 mod distance;
+mod edge_styles;
 mod extremes;
 mod failures;
 mod finish;

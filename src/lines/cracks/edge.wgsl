@@ -2,6 +2,23 @@
 
 // The edge response of [CL] and the geometry of lines. Pure functions.
 
+// How convex or concave creases are drawn, see EdgeStyle. `source`: EDGE_INK or EDGE_SURFACE, otherwise
+// they are like other creases.
+struct EdgeInk {
+    color: vec3<f32>,
+    source: u32,
+    lighten: f32,
+    saturate: f32,
+    // Factors of width and opacity, and of the opacity where the edge is not lit.
+    width: f32,
+    opacity: f32,
+    unlit_opacity: f32,
+    unused: vec3<f32>,
+}
+
+const EDGE_INK: u32 = 1u;
+const EDGE_SURFACE: u32 = 2u;
+
 // How the lines of a view are found and inked. Its size is a multiple of 16 bytes, as
 // WGSL requires of a struct inside a uniform.
 struct Lines {
@@ -47,6 +64,8 @@ struct Lines {
     // 1 where folds of normals are creases; otherwise 0.
     normal_creases: u32,
     unused_y: f32,
+    convex: EdgeInk,
+    concave: EdgeInk,
 }
 
 // The grid that lines are found on: the pixels of the depth texture.
@@ -280,7 +299,8 @@ fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
 
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east
 // or south of it. It is packed into 32 bits:
-//   bits 0 to 2: a silhouette, a crease, an object edge runs along it;
+//   bits 0 to 2: a silhouette, a crease, an object edge runs along it; settled, see settle.wgsl, both
+//   a silhouette and a crease: a convex crease with a style of its own;
 //   bit 3: the line belongs to `here`, otherwise to `there`;
 //   bits 4 to 11: ink of the silhouette or crease; 12 to 19: opacity after fading;
 //   bits 20 to 31: half width, see pack_width.
@@ -337,11 +357,20 @@ fn unpack_crack(packed: u32) -> Crack {
     );
 }
 
+// Whether a settled crack has a silhouette, or a convex crease with a style of its own.
+fn is_silhouette(packed: u32) -> bool {
+    return (packed & (SILHOUETTE | CREASE)) == SILHOUETTE;
+}
+
+fn is_convex(packed: u32) -> bool {
+    return (packed & (SILHOUETTE | CREASE)) == (SILHOUETTE | CREASE);
+}
+
 // Ink of a packed crack by kind, after fading: silhouettes, creases, object edges.
 fn ink_of(packed: u32) -> vec3<f32> {
     let crack = unpack_crack(packed);
     return crack.opacity * vec3(
-        select(0.0, crack.ink, (crack.kinds & SILHOUETTE) != 0u),
+        select(0.0, crack.ink, is_silhouette(packed)),
         select(0.0, crack.ink, (crack.kinds & CREASE) != 0u),
         select(0.0, 1.0, (crack.kinds & OBJECT) != 0u),
     );

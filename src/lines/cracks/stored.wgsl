@@ -3,7 +3,7 @@
 // Reads the cracks of a pixel of the grid: the only module that declares binding 11.
 
 #import bevy_comics::lines::bend::unpack_bend
-#import bevy_comics::lines::edge::{Grid, SILHOUETTE, line_middle}
+#import bevy_comics::lines::edge::{Grid, is_silhouette, line_middle}
 
 #ifdef BLOCKS
 @group(0) @binding(11) var<storage> crack_words: array<vec2<u32>>;
@@ -42,7 +42,7 @@ fn stored_middle(packed: u32, across: vec2<f32>, bend: u32) -> vec2<f32> {
     let shifts = false;
 #else ifdef SMOOTH
     // Along a fold, the pixel that owns the line changes at every step.
-    let shifts = (packed & SILHOUETTE) != 0u;
+    let shifts = is_silhouette(packed);
 #else
     let shifts = true;
 #endif

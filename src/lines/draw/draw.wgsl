@@ -10,8 +10,8 @@
 #endif
 #import bevy_comics::lines::coverage::{disc_coverage, segment_coverage}
 #import bevy_comics::lines::edge::{
-    encode_ink, ink_of, inward_step, is_apart, largest_opacity, owner_step, unpack_middle,
-    unpack_owner, unpack_width,
+    encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
+    unpack_middle, unpack_owner, unpack_width,
 }
 #ifdef BRIDGED
 #import bevy_comics::lines::gaps::source_of
@@ -46,15 +46,23 @@
 struct Drawn {
     @location(0) ink: vec4<f32>,
 #ifdef SURFACE
-    // From the pixel to the one that owns the strongest line, in pixels of the viewport.
-    @location(1) owner: vec2<i32>,
+    // x, y: from the pixel to the one that owns the strongest line, in pixels of the viewport;
+    // z: what the crease is, see below.
+    @location(1) owner: vec4<i32>,
 #endif
 }
+
+// Of creases, if convex and concave ones differ.
+const CONCAVE: i32 = 1;
+const CONVEX: i32 = 2;
 
 // What is known of the lines at a position.
 struct Ink {
     // By kind: silhouettes, creases, object edges.
     kinds: vec3<f32>,
+    // EDGE_STYLES: that of convex creases, and of the others.
+    convex: f32,
+    concave: f32,
     strongest: f32,
     // The pixel that owns the strongest line. BRIDGED: and its crack, as in chain.wgsl.
     owner: vec2<i32>,
@@ -99,10 +107,18 @@ struct Owner {
     south: bool,
 }
 
+fn add_kinds(ink: ptr<function, Ink>, packed: u32, kinds: vec3<f32>) {
+    (*ink).kinds = max((*ink).kinds, kinds);
+#ifdef EDGE_STYLES
+    (*ink).convex = max((*ink).convex, select(0.0, kinds.y, is_convex(packed)));
+    (*ink).concave = max((*ink).concave, select(kinds.y, 0.0, is_convex(packed)));
+#endif
+}
+
 // Adds the ink of a line that covers a part of the pixel.
 fn add_ink(ink: ptr<function, Ink>, packed: u32, covered: f32, owner: Owner) {
     let kinds = covered * ink_of(packed);
-    (*ink).kinds = max((*ink).kinds, kinds);
+    add_kinds(ink, packed, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
     let stronger = alpha > (*ink).strongest;
@@ -418,7 +434,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         let half_width = unpack_width(ink.packed >> 20u);
         let covered = segment_coverage(at * viewport_scale, first, second, width_here(half_width));
         let straight = covered * ink_of(ink.packed);
-        ink.kinds = max(ink.kinds, straight);
+        add_kinds(&ink, ink.packed, straight);
 #ifdef OWNERS
         let stronger = alphas(straight) > ink.strongest;
         ink.owner = select(ink.owner, ink.first_owner, stronger);
@@ -446,7 +462,13 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     // From the middle of the pixel that owns the line.
     let owner = (vec2<f32>(ink.owner + inward_of(ink)) + 0.5 - g.from_viewport.zw) * viewport_scale;
     let away = vec2<i32>(floor(owner)) - vec2<i32>(position.xy);
-    drawn.owner = select(vec2(0), clamp(away, vec2(-127), vec2(127)), ink.strongest > 0.0);
+    var sign = 0;
+#ifdef EDGE_STYLES
+    // Dark lines go before highlights.
+    sign = select(select(0, CONCAVE, ink.concave > 0.0), CONVEX, ink.convex > ink.concave + 0.01);
+#endif
+    let offset = select(vec2(0), clamp(away, vec2(-127), vec2(127)), ink.strongest > 0.0);
+    drawn.owner = vec4(offset, sign, 0);
 #endif
     return drawn;
 }

@@ -11,6 +11,10 @@
 #ifdef SURFACE_LINES
 #import bevy_comics::lines::surface::surface_ink
 #endif
+#ifdef EDGE_STYLES
+#import bevy_comics::lines::edge::{EDGE_INK, EDGE_SURFACE, EdgeInk}
+#import bevy_comics::lines::surface::lightened
+#endif
 
 var<private> lines_drawn: Lines;
 
@@ -26,10 +30,13 @@ fn set_lines(lines: Lines) {
 // From each pixel of the viewport to the one that owns its line, see draw.wgsl.
 @group(0) @binding(5) var owner_texture: texture_2d<i32>;
 
+fn owner_texel(pixel: vec2<i32>) -> vec4<i32> {
+    return textureLoad(owner_texture, inside_viewport(pixel) - view.viewport.xy, 0);
+}
+
 // The pixel that owns the line at a pixel of the target.
 fn line_owner(pixel: vec2<i32>) -> vec2<i32> {
-    let offset = textureLoad(owner_texture, inside_viewport(pixel) - view.viewport.xy, 0).xy;
-    return inside_viewport(pixel + offset);
+    return inside_viewport(pixel + owner_texel(pixel).xy);
 }
 #endif
 
@@ -57,6 +64,8 @@ fn set_line_ink(ink: vec4<f32>) {
 struct Found {
     ink: vec3<f32>,
     slot: u32,
+    // EDGE_STYLES: 1 if the crease is concave, 2 if it is convex.
+    sign: i32,
 }
 
 // Ink and slot / 255 at a pixel of the target.
@@ -69,10 +78,13 @@ fn line_texel(pixel: vec2<i32>) -> vec4<f32> {
 // WITHOUT_LINES: there are none nearby, see Effect::line_reach.
 fn lines_at(at: vec2<f32>) -> Found {
 #ifdef WITHOUT_LINES
-    return Found(vec3(0.0), 0u);
+    return Found(vec3(0.0), 0u, 0);
 #else
     let own = line_texel(vec2<i32>(floor(at)));
-    var found = Found(own.xyz, u32(own.w * 255.0 + 0.5));
+    var found = Found(own.xyz, u32(own.w * 255.0 + 0.5), 0);
+#ifdef EDGE_STYLES
+    found.sign = owner_texel(vec2<i32>(floor(at))).z;
+#endif
 #ifdef LINES_ANYWHERE
     // Between the centres of pixels: bilinear.
     let corner = floor(at - 0.5);
@@ -86,13 +98,42 @@ fn lines_at(at: vec2<f32>) -> Found {
 #endif
 }
 
-// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else that of the
-// surface, or `kind_color`, mixed with that of its plane.
-fn own_color(slot: u32, kind_color: vec3<f32>) -> vec3<f32> {
-    var color = kind_color;
+// The colour of lines of a kind that has `ink`, without those of their object and plane.
+fn kind_color(ink: vec3<f32>) -> vec3<f32> {
 #ifdef SURFACE_LINES
-    color = surface_ink(line_surface, lines_drawn.surface_darken, lines_drawn.surface_saturate);
+    if lines_drawn.surface_darken >= 0.0 {
+        return surface_ink(line_surface, lines_drawn.surface_darken, lines_drawn.surface_saturate);
+    }
 #endif
+    return ink;
+}
+
+// The colour of creases of a sign.
+fn crease_color(sign: i32) -> vec3<f32> {
+    let otherwise = kind_color(lines_drawn.crease_color);
+#ifdef EDGE_STYLES
+    if sign == 0 {
+        return otherwise;
+    }
+    var edge = lines_drawn.concave;
+    if sign == 2 {
+        edge = lines_drawn.convex;
+    }
+#ifdef SURFACE_LINES
+    if edge.source == EDGE_SURFACE {
+        return lightened(line_surface, edge.lighten, edge.saturate);
+    }
+#endif
+    return select(otherwise, edge.color, edge.source == EDGE_INK);
+#else
+    return otherwise;
+#endif
+}
+
+// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else that of its kind, mixed
+// with that of its plane.
+fn own_color(slot: u32, of_kind: vec3<f32>) -> vec3<f32> {
+    var color = of_kind;
 #ifdef LAYER_INK
     color = (1.0 - line_ink.a) * color + line_ink.rgb;
 #endif
@@ -112,14 +153,14 @@ fn own_color(slot: u32, kind_color: vec3<f32>) -> vec3<f32> {
 fn draw_lines(picture: vec4<f32>, lines: Found) -> vec4<f32> {
     let s = lines_drawn;
     let alpha = lines.ink * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
-    var color = s.silhouette_color;
+    var color = kind_color(s.silhouette_color);
     var strongest = alpha.x;
     if alpha.z > strongest + 0.01 {
-        color = s.object_color;
+        color = kind_color(s.object_color);
         strongest = alpha.z;
     }
     if alpha.y > strongest + 0.01 {
-        color = s.crease_color;
+        color = crease_color(lines.sign);
         strongest = alpha.y;
     }
     return mix(picture, vec4(own_color(lines.slot, color), 1.0), strongest);

@@ -14,10 +14,10 @@ use crate::{
 bitflags! {
     /// What selects the shader variants of the passes that find and draw lines. The key of a view
     /// has what its lines need; its parts, such as [`LineKey::for_find`], have what is compiled
-    /// into one pass: their names are shader definitions. The two highest bits are flags of the
+    /// into one pass: their names are shader definitions. The two bits above them are flags of the
     /// depth map.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-    pub(crate) struct LineKey: u64 {
+    pub(crate) struct LineKey: u128 {
         /// The depth texture has one pixel per pixel of the viewport.
         const SAME_SIZE = 1;
         const OBLIQUE = 1 << 1;
@@ -107,8 +107,8 @@ bitflags! {
         /// How cracks near a pixel are searched, see [`Search`].
         const NEIGHBOURS = 1 << 51;
         const COLUMNS = 1 << 52;
-        /// The colour of lines depends on the surface that they belong to; and whether they take
-        /// the colour a pixel inside of it, because its rim is mixed with others.
+        /// The colour of lines depends on the surface that they belong to, or on the sign of creases;
+        /// and whether they take the colour a pixel inside of it, because its rim is mixed with others.
         const SURFACE = 1 << 53;
         const INWARD = 1 << 54;
         /// Drawing must know the pixel that owns a line.
@@ -124,11 +124,14 @@ bitflags! {
         const SKY_BEYOND = 1 << 60;
         /// Lines fade with the distance from what the middle of the view shows.
         const MIDDLE_DEPTH = 1 << 61;
+        /// Convex and concave creases differ; and whether in the light.
+        const EDGE_STYLES = 1 << 62;
+        const LIT_EDGES = 1 << 63;
     }
 }
 
 /// The lowest bit of the flags of the depth map.
-const MAP_FLAGS: u32 = 62;
+const MAP_FLAGS: u32 = 64;
 
 impl LineKey {
     /// What is in the buffer of the visible range.
@@ -163,11 +166,13 @@ impl LineKey {
         .union(Self::FOG)
         .union(Self::DISTANCE_FADE)
         .union(Self::IN_LAYERS)
+        .union(Self::EDGE_STYLES)
         .union(Self::SIMPLIFIED_CREASES);
 
     /// What there is only on devices with compute shaders.
     const COMPUTED: Self = Self::WEIGHTS
         .union(Self::OUTER_WEIGHT)
+        .union(Self::LIT_EDGES)
         .union(Self::DEPTH_BORDERS)
         .union(Self::MIDDLE_DEPTH)
         .union(Self::WEIGHS_BY_OBJECTS)
@@ -243,6 +248,8 @@ impl LineKey {
             (request.middle, Self::MIDDLE_DEPTH),
             (layers.is_some(), Self::IN_LAYERS),
             (layers.is_some_and(|l| l.finds_borders), Self::DEPTH_BORDERS),
+            (lines.has_edge_styles(), Self::EDGE_STYLES),
+            (lines.has_lit_edges(), Self::LIT_EDGES),
             (fainter, Self::SIMPLIFIED_CREASES),
             (request.weighs_by_objects(), Self::WEIGHS_BY_OBJECTS),
             (true, Self::BLOCKS),
@@ -268,7 +275,7 @@ impl LineKey {
             | key.when(Self::VARYING, Self::VARIED)
             | key.when(Self::OBJECT_STYLES | Self::SURFACE, Self::OWNERS)
             | if folds { Self::FOLDS } else { Self::empty() }
-            | Self::from_bits_retain(u64::from(request.map_flags) << MAP_FLAGS)
+            | Self::from_bits_retain(u128::from(request.map_flags) << MAP_FLAGS)
     }
 
     /// These flags if the key has any of others.
@@ -282,7 +289,7 @@ impl LineKey {
 
     /// The part that the search for blocks with cracks depends on.
     pub fn for_walk(self) -> Self {
-        let map = Self::VISIBLE_RANGE | Self::from_bits_retain(u64::MAX << MAP_FLAGS);
+        let map = Self::VISIBLE_RANGE | Self::from_bits_retain(u128::MAX << MAP_FLAGS);
         self & (Self::FOUND | Self::CRACKS | Self::BRIDGED | Self::JUMPS)
             | Self::DEPTH
             | Self::BOUNDS
@@ -324,9 +331,9 @@ impl LineKey {
         let reads = Self::DEPTH | Self::EDITS | self & Self::OBLIQUE;
         let by_objects = Self::OUTER_WEIGHT | Self::WEIGHS_BY_OBJECTS;
         let of_view = Self::DEPTH_BORDERS | Self::MIDDLE_DEPTH;
-        self & (lines | Self::WEIGHT | Self::WEIGHTS | of_view)
+        self & (lines | Self::WEIGHT | Self::WEIGHTS | Self::LIT_EDGES | of_view)
             | self.when(Self::FOLDS | Self::RIMS | Self::WEIGHT, reads)
-            | self.when(Self::LIGHT_WEIGHT, Self::NORMALS)
+            | self.when(Self::LIGHT_WEIGHT | Self::LIT_EDGES, Self::NORMALS)
             | self.when(Self::LIGHT_WEIGHT | Self::WIDTH_MAP, Self::SURFACE_WEIGHT)
             | self.when(by_objects, self & Self::OBJECT_IDS)
             | self.when(Self::WEIGHS_BY_OBJECTS, Self::OBJECT_DEPTHS)
@@ -352,7 +359,8 @@ impl LineKey {
     /// What drawing and strokes have of the colours of lines and their sheet.
     fn for_ink(self) -> Self {
         let ink = Self::BOIL | Self::SPREAD | Self::STREAKS | Self::SURFACE | Self::INWARD;
-        self & (ink | Self::OBJECT_STYLES) | self.when(Self::OBJECT_STYLES, Self::OBJECT_IDS)
+        self & (ink | Self::EDGE_STYLES | Self::OBJECT_STYLES)
+            | self.when(Self::OBJECT_STYLES, Self::OBJECT_IDS)
     }
 
     /// The part that drawing the strokes beyond loose ends depends on.

@@ -43,6 +43,10 @@
 #import bevy_comics::lines::fade::fade_factor
 #import bevy_comics::lines::layer_lines::layer_factors
 #import bevy_comics::lines::owner_plane::{object_at, owner_weights}
+#ifdef EDGE_STYLES
+#import bevy_comics::lines::edge::OBJECT
+#import bevy_comics::lines::sign::{edge_factors, is_convex_edge}
+#endif
 #import bevy_comics::lines::simplification::crease_factor
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
@@ -306,6 +310,18 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 #ifdef SIMPLIFIED_CREASES
     let fainter = crease_factor(line_pass.simplification, texel_depth(owner, 0), object_at(owner));
     left.y *= select(1.0, fainter, (packed & CREASE) != 0u);
+#endif
+#ifdef EDGE_STYLES
+    if (packed & (CREASE | OBJECT)) == CREASE {
+        let convex = is_convex_edge(here, there);
+        if convex {
+            left *= edge_factors(line_pass.settings.convex, here, there);
+        } else {
+            left *= edge_factors(line_pass.settings.concave, here, there);
+        }
+        let weighted = weighted_crack(packed, left.x, left.y);
+        return weighted | select(0u, SILHOUETTE, convex && weighted != 0u);
+    }
 #endif
     return weighted_crack(packed, left.x, left.y);
 }

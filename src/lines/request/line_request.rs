@@ -126,10 +126,13 @@ impl LineRequest {
         self.ids && self.simplification.is_some_and(by_objects)
     }
 
-    /// Whether the pixels that own lines are drawn, for the colour of lines.
+    /// Whether the pixels that own lines are drawn, and which creases are convex, for the colour of
+    /// lines.
     pub fn needs_owners(&self) -> bool {
         let own_colors = |layers: LineLayers| layers.has_colors();
-        self.settings.color.is_surface() || self.layers.is_some_and(own_colors)
+        self.settings.has_surface_colors()
+            || self.settings.has_edge_styles()
+            || self.layers.is_some_and(own_colors)
     }
 
     /// Number of passes that link cracks.

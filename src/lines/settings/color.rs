@@ -74,10 +74,10 @@ impl LineColor {
         matches!(self, Self::Surface { .. })
     }
 
-    /// The factors of luminance and of the distance from grey.
+    /// The factors of luminance, negative for ink, and of the distance from grey.
     pub(crate) fn factors(self) -> [f32; 2] {
         match self {
-            Self::Ink => [1.0; 2],
+            Self::Ink => [-1.0, 1.0],
             Self::Surface { darken, saturate } => [darken, saturate],
         }
     }

@@ -7,6 +7,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::edges::EdgeStyle;
 use crate::settings::{
     Blend, Equations, FieldRange, blend_color, blend_ratio, clamp_fields, color_serde,
 };
@@ -126,6 +127,12 @@ pub struct Creases {
     /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
+    /// How convex edges are drawn, such as those of a box: as a highlight, for instance. `None`:
+    /// like the others, with `color` and [`LineColor`](crate::lines::LineColor). Default: `None`.
+    pub convex: Option<EdgeStyle>,
+    /// How concave edges are drawn, such as those in the corners of a room. `None`: like the others.
+    /// Default: `None`.
+    pub concave: Option<EdgeStyle>,
 }
 
 /// What creases are found by.
@@ -166,12 +173,25 @@ impl Creases {
         softness: 0.5,
         color: Color::BLACK,
         opacity: 1.0,
+        convex: None,
+        concave: None,
     };
 
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        clamp_fields(self)
+        Self {
+            convex: self.convex.map(EdgeStyle::sanitized),
+            concave: self.concave.map(EdgeStyle::sanitized),
+            ..clamp_fields(self)
+        }
+    }
+
+    /// The styles of convex and concave edges, if they have any.
+    pub(crate) fn edge_styles(&self) -> impl Iterator<Item = EdgeStyle> {
+        let measured = self.equations == Equations::Corrected;
+        let styles = [self.convex, self.concave].into_iter().flatten();
+        styles.filter(move |_| measured)
     }
 
     /// `k_n = sin(angle / 2)`, and at least the noise of normals with 10 bits per
@@ -311,6 +331,8 @@ impl Blend for Creases {
             softness: self.softness.lerp(other.softness, t),
             color: blend_color(self.color, other.color, t),
             opacity: self.opacity.lerp(other.opacity, t),
+            convex: EdgeStyle::blend(self.convex, other.convex, t),
+            concave: EdgeStyle::blend(self.concave, other.concave, t),
         }
     }
 }

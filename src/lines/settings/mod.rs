@@ -2,6 +2,7 @@
 
 mod boil;
 mod color;
+mod edges;
 mod fog;
 mod kinds;
 mod map_jumps;
@@ -11,6 +12,7 @@ mod weight;
 
 pub use boil::LineBoil;
 pub use color::LineColor;
+pub use edges::{EdgeColor, EdgeStyle};
 pub use fog::LineFog;
 pub use kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes};
 pub use map_jumps::MapJumps;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     boil::LineBoil,
     color::LineColor,
+    edges::EdgeStyle,
     fog::LineFog,
     kinds::{CreaseSource, Creases, LineEdge, LineResponse, ObjectEdges, Silhouettes},
     weight::LineWeight,
@@ -311,6 +312,33 @@ impl Outlines {
             && (self.creases).is_some_and(|creases| creases.source != CreaseSource::Normals)
     }
 
+    /// Whether convex and concave creases differ.
+    pub(crate) fn has_edge_styles(&self) -> bool {
+        self.creases
+            .is_some_and(|creases| creases.edge_styles().next().is_some())
+    }
+
+    /// Whether the light on creases is read.
+    pub(crate) fn has_lit_edges(&self) -> bool {
+        let lit = |style: EdgeStyle| style.unlit_opacity < 1.0;
+        self.creases
+            .is_some_and(|creases| creases.edge_styles().any(lit))
+    }
+
+    /// Whether the colour of some lines is that of the surface that they belong to.
+    pub(crate) fn has_surface_colors(&self) -> bool {
+        let edge = |style: EdgeStyle| style.color.is_surface();
+        self.color.is_surface()
+            || self
+                .creases
+                .is_some_and(|creases| creases.edge_styles().any(edge))
+    }
+
+    /// Whether completing lines reads normals.
+    pub(crate) fn weighs_by_normals(&self) -> bool {
+        self.weight.reads_normals() || self.has_lit_edges()
+    }
+
     /// Whether finding lines reads normals. Hard lines choose their side by them.
     pub(crate) fn finds_by_normals(&self) -> bool {
         self.creases.is_some_and(|creases| {
@@ -370,6 +398,8 @@ impl Outlines {
             0.0
         };
         // Without compute shaders, all weights are 1.
-        own.max(widest_object) * self.weight.largest(vertex_widths).max(1.0)
+        let edges = self.creases.iter().flat_map(Creases::edge_styles);
+        let edge = edges.map(|style| style.width).fold(1.0, f32::max);
+        own.max(widest_object) * edge * self.weight.largest(vertex_widths).max(1.0)
     }
 }

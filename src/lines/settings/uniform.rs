@@ -3,6 +3,7 @@
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::{
+    edges::EdgeUniform,
     kinds::{CreaseSource, ramp},
     outlines::Outlines,
 };
@@ -71,6 +72,8 @@ impl Outlines {
             found_sections: u32::from(self.divides_meshes()),
             normal_creases: u32::from(c.source != CreaseSource::Meshes),
             unused_y: 0.0,
+            convex: EdgeUniform::new(c.convex),
+            concave: EdgeUniform::new(c.concave),
         }
     }
 }
@@ -108,6 +111,8 @@ pub(crate) struct LinesUniform {
     found_sections: u32,
     normal_creases: u32,
     unused_y: f32,
+    convex: EdgeUniform,
+    concave: EdgeUniform,
 }
 
 #[cfg(test)]

@@ -1,0 +1,215 @@
+//! How convex and concave creases are drawn.
+
+use bevy::{
+    color::Color,
+    math::{FloatExt, Vec3},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::{
+    Blend, FieldRange, blend_color, clamp_fields, clamp_or_default, color_serde, linear_rgb,
+};
+
+/// How the creases of one sign are drawn: [`Creases::convex`] or [`Creases::concave`]. The default is
+/// a highlight: the surface, lighter.
+///
+/// An edge is convex where the surface bends away from the camera, as at the edges of a box, and where
+/// a part stands in front of another one. It is concave where the surface bends towards the camera, as
+/// in the corners of a room; lines in flat surfaces count as concave. The sign is found in the depths
+/// of two pixels on either side, so it is right where both faces are at least 2 pixels wide. Needs
+/// compute shaders: other devices draw all creases alike, and so do the faithful equations. Where a
+/// crease is also an edge between two objects, it has the colour of object edges.
+///
+/// [`Creases::convex`]: crate::lines::Creases::convex
+/// [`Creases::concave`]: crate::lines::Creases::concave
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EdgeStyle {
+    /// Colour of the lines. Default: [`EdgeColor::HIGHLIGHT`].
+    pub color: EdgeColor,
+    /// Width of the lines, as a multiple of the others'. Range 0 to 4, default 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub width: f32,
+    /// Opacity of the lines, as a fraction of the other creases'. Range 0 (no lines) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity: f32,
+    /// The fraction of the opacity that is left where neither side of the edge faces the light, which is
+    /// the [`KeyLight`](crate::KeyLight), else the brightest directional light, else one from
+    /// above. Cast shadows do not count. Below 1, the normal prepass is added to the camera.
+    /// Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub unlit_opacity: f32,
+}
+
+impl EdgeStyle {
+    /// The default.
+    pub const HIGHLIGHT: Self = Self {
+        color: EdgeColor::HIGHLIGHT,
+        width: 1.0,
+        opacity: 1.0,
+        unlit_opacity: 1.0,
+    };
+
+    /// The settings that are used.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            color: self.color.sanitized(),
+            ..clamp_fields(self)
+        }
+    }
+
+    fn uniform(&self) -> EdgeUniform {
+        let (color, source, lighten, saturate) = match self.color {
+            EdgeColor::Ink { color } => (linear_rgb(color), INK, 0.0, 1.0),
+            EdgeColor::Surface { lighten, saturate } => (Vec3::ZERO, SURFACE, lighten, saturate),
+        };
+        EdgeUniform {
+            color,
+            source,
+            lighten,
+            saturate,
+            width: self.width,
+            opacity: self.opacity,
+            unlit_opacity: self.unlit_opacity,
+            unused: Vec3::ZERO,
+        }
+    }
+}
+
+impl Default for EdgeStyle {
+    fn default() -> Self {
+        Self::HIGHLIGHT
+    }
+}
+
+impl Blend for EdgeStyle {
+    fn faded(self, fraction: f32) -> Self {
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
+    }
+
+    fn same_modes(&self, other: &Self) -> bool {
+        self.color.is_surface() == other.color.is_surface()
+    }
+
+    fn mixed(self, other: Self, t: f32) -> Self {
+        Self {
+            color: self.color.mixed(other.color, t),
+            width: self.width.lerp(other.width, t),
+            opacity: self.opacity.lerp(other.opacity, t),
+            unlit_opacity: self.unlit_opacity.lerp(other.unlit_opacity, t),
+        }
+    }
+}
+
+/// Where the colour of convex or concave creases comes from. Objects whose `OutlineStyle` has a colour
+/// keep that.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+pub enum EdgeColor {
+    /// A colour of their own.
+    Ink {
+        /// The colour, clamped to what a display shows; its alpha is not used.
+        #[serde(with = "color_serde")]
+        color: Color,
+    },
+    /// The surface that the line belongs to, after the effects that change colours. So it is darker
+    /// in shadow, whatever casts it. In multisampled views, a few pixels of slanted lines mix in what
+    /// lies behind.
+    Surface {
+        /// How much lighter the line is than the surface, in OKLab: 1 is white, -1 is black; half of
+        /// it is taken from the chroma. Range -1 to 1, 0.35 if it is not finite.
+        #[reflect(@FieldRange::linear(-1.0, 1.0))]
+        lighten: f32,
+        /// Factor of the chroma in OKLab. Range 0 (grey) to 2, 1 if it is not finite.
+        #[reflect(@FieldRange::linear(0.0, 2.0))]
+        saturate: f32,
+    },
+}
+
+impl EdgeColor {
+    /// The surface, lighter: the default.
+    pub const HIGHLIGHT: Self = Self::Surface {
+        lighten: 0.35,
+        saturate: 1.0,
+    };
+
+    /// The settings that are used.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        match self {
+            Self::Ink { color } => Self::Ink { color },
+            Self::Surface { lighten, saturate } => Self::Surface {
+                lighten: clamp_or_default(lighten, 0.35, -1.0, 1.0),
+                saturate: clamp_or_default(saturate, 1.0, 0.0, 2.0),
+            },
+        }
+    }
+
+    fn mixed(self, other: Self, t: f32) -> Self {
+        match (self, other) {
+            (Self::Ink { color: a }, Self::Ink { color: b }) => Self::Ink {
+                color: blend_color(a, b, t),
+            },
+            (
+                Self::Surface {
+                    lighten: a,
+                    saturate: c,
+                },
+                Self::Surface {
+                    lighten: b,
+                    saturate: d,
+                },
+            ) => Self::Surface {
+                lighten: a.lerp(b, t),
+                saturate: c.lerp(d, t),
+            },
+            (_, _) if t < 0.5 => self,
+            _ => other,
+        }
+    }
+
+    /// Whether the colour depends on the surface below.
+    pub(crate) fn is_surface(self) -> bool {
+        matches!(self, Self::Surface { .. })
+    }
+}
+
+impl Default for EdgeColor {
+    fn default() -> Self {
+        Self::HIGHLIGHT
+    }
+}
+
+/// Values of `EdgeUniform::source`.
+const OTHERS: u32 = 0;
+const INK: u32 = 1;
+const SURFACE: u32 = 2;
+
+/// `EdgeInk` of `edge.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct EdgeUniform {
+    color: Vec3,
+    source: u32,
+    lighten: f32,
+    saturate: f32,
+    width: f32,
+    opacity: f32,
+    unlit_opacity: f32,
+    unused: Vec3,
+}
+
+impl EdgeUniform {
+    /// Without a style, lines are like the others.
+    pub fn new(style: Option<EdgeStyle>) -> Self {
+        let others = || Self {
+            source: OTHERS,
+            ..EdgeStyle::HIGHLIGHT.uniform()
+        };
+        style.map_or_else(others, |style| style.uniform())
+    }
+}
