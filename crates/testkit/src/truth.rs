@@ -4,7 +4,8 @@
 //!
 //! * silhouette: the step of their raw depth exceeds the slopes on both sides by more than
 //!   2 % of the nearer depth;
-//! * crease: no silhouette, and their normals differ by more than 30 degrees;
+//! * crease: no silhouette, and their normals differ by more than 30 degrees, or they are of two
+//!   sections of a mesh that bend by 10 degrees there or have a step of 1e-4 of the depth;
 //! * object edge: their ids differ.
 //!
 //! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
@@ -13,7 +14,10 @@
 mod ends;
 
 use bevy::prelude::*;
-use bevy_comics::{Outlines, lines::ObjectEdges};
+use bevy_comics::{
+    Outlines,
+    lines::{Creases, ObjectEdges},
+};
 
 pub use self::ends::{at_places, ends_of_lines, line_ends};
 use crate::read_back::{self, CrackWords};
@@ -21,11 +25,14 @@ use crate::read_back::{self, CrackWords};
 /// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
 
-/// Invisible object edges: ids are drawn, and no line.
+/// Invisible creases and object edges: ids and sections are drawn, and no line.
 pub fn ids_alone() -> Outlines {
     Outlines {
         silhouettes: None,
-        creases: None,
+        creases: Some(Creases {
+            opacity: 1e-6,
+            ..default()
+        }),
         objects: Some(ObjectEdges {
             opacity: 1e-6,
             ..default()
@@ -40,6 +47,8 @@ struct Seen {
     depth: Vec<f32>,
     normals: Vec<[f32; 4]>,
     ids: Vec<u32>,
+    /// Sections of meshes; 0 for none.
+    sections: Vec<u32>,
 }
 
 /// The border between two pixels: which kinds of line run along it, and whether one does that may
@@ -58,6 +67,7 @@ impl Seen {
             depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
             normals: normals.pixels,
             ids: ids.pixels.iter().map(|p| p[0]).collect(),
+            sections: ids.pixels.iter().map(|p| p[1] >> 8).collect(),
         }
     }
 
@@ -83,7 +93,11 @@ impl Seen {
         let cosine = cosine(self.normals[i], self.normals[j]);
         let both = a > 0.0 && b > 0.0;
         let object = self.ids[i] != self.ids[j];
-        let crease = both && !silhouette && cosine < 30f32.to_radians().cos();
+        let [section, other] = [self.sections[i], self.sections[j]];
+        let parts = !object && section != other && section.min(other) > 0;
+        let bends = cosine < 10f32.to_radians().cos() || excess > 1e-4 * near;
+        let sharp = cosine < 30f32.to_radians().cos();
+        let crease = both && !silhouette && (sharp || parts && bends);
         Border {
             kinds: [silhouette, crease, object],
             faint: excess > 0.01 * near || both && cosine < 20f32.to_radians().cos() || object,

@@ -174,14 +174,15 @@ fn step_excess(
 // How the depths of six pixels in a row depart from a plane in their middle, beyond four times what
 // they bend beside it: 0 or less on planes and curves.
 struct Departures {
-    // The step between the two in the middle, and the larger of those on both sides of it.
+    // The step between the two in the middle, and the larger of those on both sides of it and of those
+    // over two pixels, of which the middle is one half: a face that is about a pixel wide.
     step: vec4<f32>,
     beside: vec4<f32>,
     // How much the slope changes between them.
     turn: vec4<f32>,
 }
 
-// A step makes two bends in a row in opposite directions.
+// A step makes two bends in opposite directions.
 fn step_of(bend: vec4<f32>, next: vec4<f32>) -> vec4<f32> {
     let opposite = (bend > vec4(0.0)) != (next > vec4(0.0));
     return select(vec4(0.0), min(abs(bend), abs(next)), opposite);
@@ -196,14 +197,12 @@ fn departures(
     let bend_2 = (here - there) - (there - beyond);
     let bend_3 = (there - beyond) - (beyond - beyond_2);
     let outer = 4.0 * min(abs(bend_0), abs(bend_3));
-    return Departures(
-        step_of(bend_1, bend_2) - outer,
-        max(
-            step_of(bend_0, bend_1) - 4.0 * min(abs(bend_2), abs(bend_3)),
-            step_of(bend_2, bend_3) - 4.0 * min(abs(bend_0), abs(bend_1)),
-        ),
-        abs(bend_1 + bend_2) - outer,
+    let beside = max(
+        step_of(bend_0, bend_1) - 4.0 * min(abs(bend_2), abs(bend_3)),
+        step_of(bend_2, bend_3) - 4.0 * min(abs(bend_0), abs(bend_1)),
     );
+    let wide = max(step_of(bend_0, bend_2) - 4.0 * abs(bend_3), step_of(bend_1, bend_3) - 4.0 * abs(bend_0));
+    return Departures(step_of(bend_1, bend_2) - outer, max(beside, wide), abs(bend_1 + bend_2) - outer);
 }
 
 // The step on the other side of one beside a larger step, as a fraction of it, from which

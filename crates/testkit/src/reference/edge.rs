@@ -67,20 +67,22 @@ pub fn step_excess(d: [f64; 6]) -> f64 {
 }
 
 /// How six raw depths in a row depart from a plane in their middle, beyond four times what they bend
-/// beside it: the step in the middle, the larger one on its two sides, and the change of the slope.
+/// beside it: the step in the middle, the largest one on its two sides or over it and one of them, and
+/// the change of the slope.
 pub fn departures(d: [f64; 6]) -> [f64; 3] {
     let bends = [0, 1, 2, 3].map(|i| d[i] - 2.0 * d[i + 1] + d[i + 2]);
-    let step = |i: usize, others: [usize; 2]| {
-        let [a, b] = [bends[i], bends[i + 1]];
+    let step = |[i, j]: [usize; 2], others: [usize; 2]| {
+        let [a, b] = [bends[i], bends[j]];
         let opposite = (a > 0.0) != (b > 0.0);
         let size = if opposite { a.abs().min(b.abs()) } else { 0.0 };
         let [c, d] = others.map(|i| bends[i].abs());
         size - 4.0 * c.min(d)
     };
     let outer = bends[0].abs().min(bends[3].abs());
-    let beside = step(0, [2, 3]).max(step(2, [0, 1]));
+    let beside = step([0, 1], [2, 3]).max(step([2, 3], [0, 1]));
+    let wide = step([0, 2], [3, 3]).max(step([1, 3], [0, 0]));
     let turn = (bends[1] + bends[2]).abs() - 4.0 * outer;
-    [step(1, [0, 3]), beside, turn]
+    [step([1, 2], [0, 3]), beside.max(wide), turn]
 }
 
 /// Whether the step between the third and the fourth of six raw depths is part of a curve
