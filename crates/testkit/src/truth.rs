@@ -5,11 +5,11 @@
 //! * silhouette: the step of their raw depth exceeds the slopes on both sides by more than
 //!   2 % of the nearer depth;
 //! * crease: no silhouette, and their normals differ by more than 30 degrees, or they are of two
-//!   sections of a mesh that bend by 10 degrees there or have a step of 1e-4 of the depth;
+//!   sections of a mesh that bend by 20 degrees there or have a step of 2e-4 of the depth;
 //! * object edge: their ids differ.
 //!
 //! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
-//! 20 degrees. Outlines may or may not draw it.
+//! 20 degrees; between sections, of 5e-5 or 10 degrees. Outlines may or may not draw it.
 
 mod ends;
 
@@ -95,12 +95,12 @@ impl Seen {
         let object = self.ids[i] != self.ids[j];
         let [section, other] = [self.sections[i], self.sections[j]];
         let parts = !object && section != other && section.min(other) > 0;
-        let bends = cosine < 10f32.to_radians().cos() || excess > 1e-4 * near;
-        let sharp = cosine < 30f32.to_radians().cos();
-        let crease = both && !silhouette && (sharp || parts && bends);
+        let folds = |degrees: f32| both && cosine < degrees.to_radians().cos();
+        let ends = |degrees, step| parts && (folds(degrees) || excess > step * near);
+        let crease = both && !silhouette && (folds(30.0) || ends(20.0, 2e-4));
         Border {
             kinds: [silhouette, crease, object],
-            faint: excess > 0.01 * near || both && cosine < 20f32.to_radians().cos() || object,
+            faint: excess > 0.01 * near || folds(20.0) || ends(10.0, 5e-5) || object,
         }
     }
 

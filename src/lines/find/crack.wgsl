@@ -223,6 +223,11 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     let drawn_there = has(there, CREASE);
     let joined = at.excess < s.jump * reference;
     let drawn = (drawn_here | drawn_there) & (byte(ink) > vec4(0u)) & free;
+#ifdef SECTIONS
+    // A weak silhouette there is as strong as the crease that follows where the step is lower still.
+    let strong = border & (found.kinds != vec4(0u)) & (drawn_here | drawn_there) & !are_silent(at);
+    found.ink = select(found.ink, max(found.ink, ink), strong);
+#endif
     let crease = (ridge | rim) & joined & drawn;
     found.kinds = select(found.kinds, vec4(CREASE), crease);
     found.ink = select(found.ink, ink, crease);

@@ -243,6 +243,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let rim = is_rim_ridge(folds) && !by_edges;
         let drawn = (ridge || rim) && !silent;
         let free = !crack.kinds[0] || border && !crack.certain;
+        if border && !silent && crack.kinds[0] {
+            crack.ink = crack.ink.max(amount);
+        }
         if drawn && excess < jump && is_stored(amount) && free {
             crack.kinds[..2].copy_from_slice(&[false, true]);
             crack.ink = amount;
