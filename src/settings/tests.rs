@@ -15,7 +15,7 @@ use crate::{
     Paint, Paper, Sketch, SpeedLines, SteppedAnimation, ToneBands, ToneRamp, TwoTone, Vignette,
     depth::RangeSmoothing,
     effects::DepthLayer,
-    lines::{Creases, LineColor, LineWeight, ObjectEdges, Silhouettes},
+    lines::{Creases, EdgeColor, EdgeStyle, LineColor, LineWeight, ObjectEdges, Silhouettes},
 };
 #[cfg(all(feature = "toon", feature = "objects"))]
 use crate::{
@@ -315,6 +315,36 @@ fn any_number_of_the_lines_is_clamped() {
         .sanitized()
         .angle
     });
+    let edge = |edit: fn(&mut EdgeStyle, f32)| {
+        move |x| {
+            let mut style = EdgeStyle::default();
+            edit(&mut style, x);
+            // As a part of creases.
+            let creases = Creases {
+                convex: Some(style),
+                ..Default::default()
+            };
+            creases.sanitized().convex.expect("a style")
+        }
+    };
+    let width = edge(|e, x| e.width = x);
+    fuzz("EdgeStyle::width", 0.0, 4.0, |x| width(x).width);
+    let opacity = edge(|e, x| e.opacity = x);
+    fuzz("EdgeStyle::opacity", 0.0, 1.0, |x| opacity(x).opacity);
+    let unlit = edge(|e, x| e.unlit_opacity = x);
+    fuzz("EdgeStyle::unlit_opacity", 0.0, 1.0, |x| {
+        unlit(x).unlit_opacity
+    });
+    let surface = edge(|e, x| {
+        let (lighten, saturate) = (x, x);
+        e.color = EdgeColor::Surface { lighten, saturate };
+    });
+    let parts = |x| match surface(x).color {
+        EdgeColor::Surface { lighten, saturate } => [lighten, saturate],
+        EdgeColor::Ink { .. } => unreachable!("a surface"),
+    };
+    fuzz("EdgeColor::Surface::lighten", -1.0, 1.0, |x| parts(x)[0]);
+    fuzz("EdgeColor::Surface::saturate", 0.0, 2.0, |x| parts(x)[1]);
     fuzz("ObjectEdges::opacity", 0.0, 1.0, |x| {
         ObjectEdges {
             opacity: x,

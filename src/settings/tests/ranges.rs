@@ -69,6 +69,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Outlines::sanitized);
     check(Silhouettes::sanitized);
     check(Creases::sanitized);
+    check(EdgeStyle::sanitized);
     check(ObjectEdges::sanitized);
     check(Sketch::sanitized);
     check(ToneRamp::sanitized);

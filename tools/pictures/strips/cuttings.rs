@@ -24,7 +24,7 @@ const HALF: UVec2 = UVec2::new(470, 264);
 /// Four frames of a motion in a row.
 const QUARTER: UVec2 = UVec2::new(233, 160);
 
-const FIGURES: [Figure; 6] = [
+const FIGURES: [Figure; 7] = [
     Figure {
         name: "lines",
         part: HALF,
@@ -59,6 +59,12 @@ const FIGURES: [Figure; 6] = [
             ("no-overshoot", 1, [125, 70]),
             ("overshoot", 1, [125, 70]),
         ],
+    },
+    Figure {
+        name: "lines-edges",
+        part: HALF,
+        columns: 2,
+        cuttings: &[("default", 0, [125, 141]), ("edges", 0, [125, 141])],
     },
     Figure {
         name: "lines-budget",

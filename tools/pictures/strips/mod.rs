@@ -9,7 +9,7 @@ use std::path::Path;
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, Desaturation, IsoLines, Outlines, ToneBands,
-    lines::{CreaseSource, Creases, LineBoil, LineColor, LineWeight},
+    lines::{CreaseSource, Creases, EdgeStyle, LineBoil, LineColor, LineWeight},
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::{RgbaImage, imageops};
@@ -162,6 +162,17 @@ fn weights() -> Vec<Strip> {
         }),
         ..plain
     };
+    let highlight = EdgeStyle {
+        unlit_opacity: 0.0,
+        ..default()
+    };
+    let edges = Outlines {
+        creases: Some(Creases {
+            convex: Some(highlight),
+            ..default()
+        }),
+        ..plain
+    };
     let hold = Outlines {
         width: 3.0,
         color: LineColor::SURFACE,
@@ -176,6 +187,7 @@ fn weights() -> Vec<Strip> {
         Strip::new("boil", Theatre, Turntable, boil),
         Strip::new("surface", Village, Walk, hold),
         Strip::new("normals", Village, Walk, normals),
+        Strip::new("edges", Village, Walk, edges),
         Strip::new("fog", Village, Walk, plain).on(stages::fog),
     ]
 }

@@ -8,7 +8,9 @@ use bevy_comics::{
     depth::RangeSmoothing,
     effect::EffectRegistry,
     effects::DepthLayer,
-    lines::{Creases, LineBoil, LineColor, LineWeight, ObjectEdges, Silhouettes},
+    lines::{
+        Creases, EdgeColor, EdgeStyle, LineBoil, LineColor, LineWeight, ObjectEdges, Silhouettes,
+    },
 };
 
 /// Every type with settings, by its name in paths.
@@ -19,6 +21,8 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("depth_map.smoothing", RangeSmoothing::type_info()),
         ("outlines.silhouettes", Silhouettes::type_info()),
         ("outlines.creases", Creases::type_info()),
+        ("outlines.creases.convex", EdgeStyle::type_info()),
+        ("outlines.creases.convex.color", EdgeColor::type_info()),
         ("outlines.objects", ObjectEdges::type_info()),
         ("outlines.weight", LineWeight::type_info()),
         ("outlines.boil", LineBoil::type_info()),
