@@ -266,8 +266,8 @@ impl Plan {
         }
     }
 
-    /// Whether the lines are those of a device that can draw sections. If ids are drawn anyway, meshes
-    /// may be divided later: then no pipeline is made anew, and no line is missing meanwhile.
+    /// Whether borders of sections are creases, on a device that can draw sections. If ids are drawn
+    /// anyway they are before any mesh is divided: then no pipeline is made anew, and no line is missing.
     fn has_section_borders(&self) -> bool {
         let Some(lines) = self.lines.filter(Outlines::has_measured_creases) else {
             return false;

@@ -218,11 +218,16 @@ fn contacts_are_edges_between_objects() {
 }
 
 /// The upper edge of a box, with light from this direction. `lit`: what is left without light.
-fn highlight(small: &mut Small, to_light: Vec3, style: EdgeStyle) -> [f64; 3] {
+fn highlight(
+    small: &mut Small,
+    source: CreaseSource,
+    to_light: Vec3,
+    style: EdgeStyle,
+) -> [f64; 3] {
     let towards = Transform::default().looking_to(-to_light, Vec3::Y);
     let light = DirectionalLight::default();
     let light = small.world().spawn((KeyLight, light, towards, Object)).id();
-    let mut lines = signs(CreaseSource::Both);
+    let mut lines = signs(source);
     lines.creases = lines.creases.map(|creases| Creases {
         convex: Some(style),
         ..creases
@@ -246,9 +251,9 @@ fn highlight(small: &mut Small, to_light: Vec3, style: EdgeStyle) -> [f64; 3] {
 const FLAT: [f32; 3] = [0.3, 0.05, 0.02];
 
 /// A box that fills the picture, whose edge runs across its middle.
-fn filled_by_an_edge() -> Small {
-    let mut small = Small::new(SIZE, Msaa::Off);
-    small.empty_view(Msaa::Off, Color::WHITE);
+fn filled_by_an_edge(msaa: Msaa) -> Small {
+    let mut small = Small::new(SIZE, msaa);
+    small.empty_view(msaa, Color::WHITE);
     let camera = Transform::from_xyz(0.0, 600.0, 600.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.insert((camera, Projection::Orthographic(unit_per_pixel(SIZE))));
     let solid: Mesh = Cuboid::from_length(400.0).into();
@@ -260,15 +265,15 @@ fn filled_by_an_edge() -> Small {
 
 #[test]
 fn highlights_are_lighter_than_their_surface() {
-    let mut small = filled_by_an_edge();
+    let mut small = filled_by_an_edge(Msaa::Off);
     for (lighten, saturate) in [(0.4, 1.0), (0.4, 0.0), (1.0, 1.0), (-0.5, 1.0), (-1.0, 1.0)] {
         let color = EdgeColor::Surface { lighten, saturate };
         let style = EdgeStyle { color, ..default() };
-        let found = highlight(&mut small, Vec3::Y, style);
+        let found = highlight(&mut small, CreaseSource::Both, Vec3::Y, style);
         let [l, a, b] = linear_to_oklab(FLAT.map(f64::from));
         let amount = f64::from(lighten);
         let end = if amount > 0.0 { 1.0 } else { 0.0 };
-        let chroma = f64::from(saturate) * (1.0 - 0.5 * amount.max(0.0));
+        let chroma = f64::from(saturate) * (1.0 - 0.5 * amount.max(0.0)) * (1.0 + amount.min(0.0));
         let lightness = l + (end - l) * amount.abs();
         let wanted = oklab_to_linear([lightness, chroma * a, chroma * b]);
         let wanted = wanted.map(|c| c.clamp(0.0, 1.0));
@@ -276,29 +281,35 @@ fn highlights_are_lighter_than_their_surface() {
     }
 }
 
-/// An edge is lit if one of its sides is.
+/// An edge is lit if one of its sides is; also where nothing else reads normals, and of several samples.
 #[test]
 fn highlights_need_light() {
-    let mut small = filled_by_an_edge();
-    let style = EdgeStyle {
-        color: EdgeColor::Ink { color: CONVEX },
-        unlit_opacity: 0.25,
-        ..default()
-    };
-    for to_light in [Vec3::Y, Vec3::Z] {
-        let found = highlight(&mut small, to_light, style);
-        assert!(alike(found, [1.0, 0.0, 0.0]), "{to_light}: {found:?}");
+    let views = [
+        (Msaa::Off, CreaseSource::Both),
+        (Msaa::Sample4, CreaseSource::Meshes),
+    ];
+    for (msaa, source) in views {
+        let mut small = filled_by_an_edge(msaa);
+        let style = EdgeStyle {
+            color: EdgeColor::Ink { color: CONVEX },
+            unlit_opacity: 0.25,
+            ..default()
+        };
+        for to_light in [Vec3::Y, Vec3::Z] {
+            let found = highlight(&mut small, source, to_light, style);
+            assert!(alike(found, [1.0, 0.0, 0.0]), "{to_light}: {found:?}");
+        }
+        let found = highlight(&mut small, source, Vec3::NEG_Y, style);
+        let flat = FLAT.map(f64::from);
+        let wanted = [0.25 + 0.75 * flat[0], 0.75 * flat[1], 0.75 * flat[2]];
+        assert!(alike(found, wanted), "{found:?}, {wanted:?}");
     }
-    let found = highlight(&mut small, Vec3::NEG_Y, style);
-    let flat = FLAT.map(f64::from);
-    let wanted = [0.25 + 0.75 * flat[0], 0.75 * flat[1], 0.75 * flat[2]];
-    assert!(alike(found, wanted), "{found:?}, {wanted:?}");
 }
 
 /// Width and opacity of one sign are factors of the others'.
 #[test]
 fn each_sign_has_its_width_and_opacity() {
-    let mut small = filled_by_an_edge();
+    let mut small = filled_by_an_edge(Msaa::Off);
     let red = |width, opacity| {
         let style = ink(CONVEX).map(|style| EdgeStyle {
             width,

@@ -8,7 +8,7 @@ use crate::{
         AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, NoUniform,
         mix_fields,
     },
-    lines::{Creases, LineWeight, ObjectEdges, Silhouettes},
+    lines::{Creases, EdgeStyle, LineWeight, ObjectEdges, Silhouettes},
     settings::{Blend, clamp_fields},
 };
 
@@ -70,8 +70,18 @@ impl Effect for Outlines {
             lit: 0.0,
             ..self.weight
         };
+        let lit = |edge: EdgeStyle| EdgeStyle {
+            unlit_opacity: 1.0,
+            ..edge
+        };
+        let by_meshes = |creases: Creases| Creases {
+            convex: creases.convex.map(lit),
+            concave: creases.concave.map(lit),
+            ..creases
+        };
+        let creases = self.creases.filter(|_| !self.finds_by_normals());
         Some(Self {
-            creases: None,
+            creases: creases.map(by_meshes),
             weight,
             ..self
         })

@@ -10,7 +10,7 @@
 #endif
 #import bevy_comics::lines::coverage::{disc_coverage, segment_coverage}
 #import bevy_comics::lines::edge::{
-    encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
+    OBJECT, encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
     unpack_middle, unpack_owner, unpack_width,
 }
 #ifdef BRIDGED
@@ -110,8 +110,10 @@ struct Owner {
 fn add_kinds(ink: ptr<function, Ink>, packed: u32, kinds: vec3<f32>) {
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef EDGE_STYLES
-    (*ink).convex = max((*ink).convex, select(0.0, kinds.y, is_convex(packed)));
-    (*ink).concave = max((*ink).concave, select(kinds.y, 0.0, is_convex(packed)));
+    // Edges between objects have no sign.
+    let crease = select(kinds.y, 0.0, (packed & OBJECT) != 0u);
+    (*ink).convex = max((*ink).convex, select(0.0, crease, is_convex(packed)));
+    (*ink).concave = max((*ink).concave, select(crease, 0.0, is_convex(packed)));
 #endif
 }
 

@@ -74,6 +74,20 @@ fn line_texel(pixel: vec2<i32>) -> vec4<f32> {
     return vec4(decode_ink(texel.xyz), texel.w);
 }
 
+#ifdef EDGE_STYLES
+// The sign of the creases at a pixel. Under temporal anti-aliasing, creases of earlier frames have ink
+// where there is no line in this one: then it is that of a pixel beside it.
+fn sign_at(pixel: vec2<i32>, creases: f32) -> i32 {
+    var sign = owner_texel(pixel).z;
+    if sign == 0 && creases > 0.0 {
+        for (var i = 0; i < 9; i++) {
+            sign = max(sign, owner_texel(pixel + vec2(i % 3 - 1, i / 3 - 1)).z);
+        }
+    }
+    return sign;
+}
+#endif
+
 // The lines at a position in physical pixels from the target's top left corner.
 // WITHOUT_LINES: there are none nearby, see Effect::line_reach.
 fn lines_at(at: vec2<f32>) -> Found {
@@ -83,7 +97,7 @@ fn lines_at(at: vec2<f32>) -> Found {
     let own = line_texel(vec2<i32>(floor(at)));
     var found = Found(own.xyz, u32(own.w * 255.0 + 0.5), 0);
 #ifdef EDGE_STYLES
-    found.sign = owner_texel(vec2<i32>(floor(at))).z;
+    found.sign = sign_at(vec2<i32>(floor(at)), found.ink.y);
 #endif
 #ifdef LINES_ANYWHERE
     // Between the centres of pixels: bilinear.

@@ -11,10 +11,11 @@ fn surface_ink(color: vec3<f32>, darken: f32, saturate: f32) -> vec3<f32> {
     return darken * max(grey + saturate * (color - grey), vec3(0.0));
 }
 
-// A highlight on a surface with a colour in linear light, or a shade: 1 is white, -1 is black.
+// A highlight on a surface with a colour in linear light, or a shade: 1 is as light as white and has half
+// of the chroma, -1 is black.
 fn lightened(color: vec3<f32>, lighten: f32, saturate: f32) -> vec3<f32> {
     let lab = linear_to_oklab(max(color, vec3(0.0)));
     let lightness = mix(lab.x, select(0.0, 1.0, lighten > 0.0), abs(lighten));
-    let chroma = saturate * (1.0 - 0.5 * max(lighten, 0.0)) * lab.yz;
+    let chroma = saturate * (1.0 - 0.5 * max(lighten, 0.0)) * (1.0 + min(lighten, 0.0)) * lab.yz;
     return max(oklab_to_linear(vec3(lightness, chroma)), vec3(0.0));
 }

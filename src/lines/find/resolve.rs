@@ -46,7 +46,8 @@ pub(crate) struct ResolveKey {
 
 impl ResolveKey {
     pub fn new(key: LineKey, samples: u32) -> Self {
-        let normals = LineKey::NORMALS | LineKey::FAITHFUL_CREASES | LineKey::LIGHT_WEIGHT;
+        let lit = LineKey::LIGHT_WEIGHT | LineKey::LIT_EDGES;
+        let normals = LineKey::NORMALS | LineKey::FAITHFUL_CREASES | lit;
         Self {
             samples,
             oblique: key.contains(LineKey::OBLIQUE),

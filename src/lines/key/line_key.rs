@@ -334,6 +334,7 @@ impl LineKey {
         self & (lines | Self::WEIGHT | Self::WEIGHTS | Self::LIT_EDGES | of_view)
             | self.when(Self::FOLDS | Self::RIMS | Self::WEIGHT, reads)
             | self.when(Self::LIGHT_WEIGHT | Self::LIT_EDGES, Self::NORMALS)
+            | self.when(Self::LIT_EDGES, self & Self::HARD)
             | self.when(Self::LIGHT_WEIGHT | Self::WIDTH_MAP, Self::SURFACE_WEIGHT)
             | self.when(by_objects, self & Self::OBJECT_IDS)
             | self.when(Self::WEIGHS_BY_OBJECTS, Self::OBJECT_DEPTHS)

@@ -45,7 +45,7 @@
 #import bevy_comics::lines::owner_plane::{object_at, owner_weights}
 #ifdef EDGE_STYLES
 #import bevy_comics::lines::edge::OBJECT
-#import bevy_comics::lines::sign::{edge_factors, is_convex_edge}
+#import bevy_comics::lines::sign::{edge_light, is_convex_edge}
 #endif
 #import bevy_comics::lines::simplification::crease_factor
 #ifdef LIGHT_WEIGHT
@@ -285,6 +285,19 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let stroke = min(g.overshoot, f32(back + on + 1));
     factor *= taper_weight(w, f32(min(back, on)) + stroke);
 #endif
+    var sign = 0u;
+    var opacity = 1.0;
+#ifdef EDGE_STYLES
+    if (packed & (CREASE | OBJECT)) == CREASE {
+        var edge = line_pass.settings.concave;
+        if is_convex_edge(here, there) {
+            edge = line_pass.settings.convex;
+            sign = SILHOUETTE;
+        }
+        factor *= edge.width;
+        opacity = edge.opacity * edge_light(edge, here, there);
+    }
+#endif
 #ifdef BUDGET
     let width = 2.0 * unpack_width(packed >> 20u) * factor;
     factor *= crowd_weight(g, width);
@@ -295,7 +308,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let position = (at * 2.0 - 1.0) * vec2(1.0, -1.0);
     fog = fog_fraction(line_pass.fog, fog_distance(line_pass.fog, position, texel_depth(owner, 0)));
 #endif
-    var left = vec2(factor, 1.0 - fog);
+    var left = vec2(factor, opacity * (1.0 - fog));
 #ifdef DISTANCE_FADE
 #ifdef MIDDLE_DEPTH
     let middle = middle_depth();
@@ -311,19 +324,8 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let fainter = crease_factor(line_pass.simplification, texel_depth(owner, 0), object_at(owner));
     left.y *= select(1.0, fainter, (packed & CREASE) != 0u);
 #endif
-#ifdef EDGE_STYLES
-    if (packed & (CREASE | OBJECT)) == CREASE {
-        let convex = is_convex_edge(here, there);
-        if convex {
-            left *= edge_factors(line_pass.settings.convex, here, there);
-        } else {
-            left *= edge_factors(line_pass.settings.concave, here, there);
-        }
-        let weighted = weighted_crack(packed, left.x, left.y);
-        return weighted | select(0u, SILHOUETTE, convex && weighted != 0u);
-    }
-#endif
-    return weighted_crack(packed, left.x, left.y);
+    let weighted = weighted_crack(packed, left.x, left.y);
+    return weighted | select(0u, sign, weighted != 0u);
 }
 #endif
 

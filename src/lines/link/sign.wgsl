@@ -9,8 +9,10 @@
 #import bevy_comics::lines::edge::EdgeInk
 #import bevy_comics::lines::pass::line_pass
 
-// A bend of the raw depth over two pixels, as a fraction of what a jump is a fraction of.
+// A bend of the raw depth over two pixels, as a fraction of what a jump is a fraction of; and of the depth,
+// what rounding may make.
 const BEND: f32 = 1e-5;
+const ROUNDING: f32 = 4e-7;
 
 fn is_in_grid(at: vec2<i32>) -> bool {
     let rect = line_pass.grid.rect;
@@ -36,7 +38,7 @@ fn is_convex_edge(here: vec2<i32>, there: vec2<i32>) -> bool {
     let across = there - here;
     let along = across.yx;
     let near = max(texel_depth(here, 0), texel_depth(there, 0));
-    let least = BEND * (s.reference_factor * near + s.reference_constant);
+    let least = max(BEND * (s.reference_factor * near + s.reference_constant), ROUNDING * near);
     let first = bend_at(here, across);
     let second = bend_at(there, across);
     let beside = bend_at(here, along) + bend_at(there, along);
@@ -46,15 +48,20 @@ fn is_convex_edge(here: vec2<i32>, there: vec2<i32>) -> bool {
     return bend < -least || step;
 }
 
-// The style of a crease: its EdgeInk's factors of width and opacity.
-fn edge_factors(edge: EdgeInk, here: vec2<i32>, there: vec2<i32>) -> vec2<f32> {
-    var lit = 1.0;
+// The fraction of the opacity that the light leaves of an edge.
+fn edge_light(edge: EdgeInk, here: vec2<i32>, there: vec2<i32>) -> f32 {
 #ifdef LIT_EDGES
     let first = texel_normal(here, 0);
     let second = texel_normal(there, 0);
     let to_light = line_pass.weight.to_light;
     let facing = max(first.w * dot(first.xyz, to_light), second.w * dot(second.xyz, to_light));
-    lit = mix(edge.unlit_opacity, 1.0, smoothstep(0.0, 0.2, facing));
+#ifdef HARD
+    let lit = select(0.0, 1.0, facing > 0.1);
+#else
+    let lit = smoothstep(0.0, 0.2, facing);
 #endif
-    return vec2(edge.width, edge.opacity * lit);
+    return mix(edge.unlit_opacity, 1.0, lit);
+#else
+    return 1.0;
+#endif
 }

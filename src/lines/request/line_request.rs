@@ -86,7 +86,7 @@ pub(crate) struct LineRequest {
     pub visible_range: bool,
     /// Object ids are drawn and can be read.
     pub ids: bool,
-    /// Some mesh is divided into sections.
+    /// Meshes are divided into sections, or may be later.
     pub sections: bool,
     /// The lines are those of marked objects.
     pub marks: bool,

@@ -20,7 +20,8 @@ use crate::settings::{
 /// in the corners of a room; lines in flat surfaces count as concave. The sign is found in the depths
 /// of two pixels on either side, so it is right where both faces are at least 2 pixels wide. Needs
 /// compute shaders: other devices draw all creases alike, and so do the faithful equations. Where a
-/// crease is also an edge between two objects, it has the colour of object edges.
+/// crease is also an edge between two objects, it has no sign: it is drawn as an object edge, or like the
+/// other creases.
 ///
 /// [`Creases::convex`]: crate::lines::Creases::convex
 /// [`Creases::concave`]: crate::lines::Creases::concave
@@ -80,6 +81,24 @@ impl EdgeStyle {
     }
 }
 
+impl EdgeStyle {
+    /// Between two styles; without one, creases have a colour in full.
+    pub(super) fn between(
+        a: Option<Self>,
+        b: Option<Self>,
+        colors: [Color; 2],
+        t: f32,
+    ) -> Option<Self> {
+        let plain = |color| Self {
+            color: EdgeColor::Ink { color },
+            ..Self::HIGHLIGHT
+        };
+        let [from, to] = colors.map(plain);
+        a.or(b)?;
+        Self::blend(Some(a.unwrap_or(from)), Some(b.unwrap_or(to)), t)
+    }
+}
+
 impl Default for EdgeStyle {
     fn default() -> Self {
         Self::HIGHLIGHT
@@ -121,11 +140,11 @@ pub enum EdgeColor {
     /// in shadow, whatever casts it. In multisampled views, a few pixels of slanted lines mix in what
     /// lies behind.
     Surface {
-        /// How much lighter the line is than the surface, in OKLab: 1 is white, -1 is black; half of
-        /// it is taken from the chroma. Range -1 to 1, 0.35 if it is not finite.
+        /// How much lighter the line is than the surface, in Oklab: 1 is as light as white, with half
+        /// of the chroma; -1 is black. Range -1 to 1, 0.35 if it is not finite.
         #[reflect(@FieldRange::linear(-1.0, 1.0))]
         lighten: f32,
-        /// Factor of the chroma in OKLab. Range 0 (grey) to 2, 1 if it is not finite.
+        /// Factor of the chroma in Oklab. Range 0 (grey) to 2, 1 if it is not finite.
         #[reflect(@FieldRange::linear(0.0, 2.0))]
         saturate: f32,
     },
@@ -211,5 +230,26 @@ impl EdgeUniform {
             ..EdgeStyle::HIGHLIGHT.uniform()
         };
         style.map_or_else(others, |style| style.uniform())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Creases without a style of their own are drawn in full, not left out.
+    #[test]
+    fn a_style_comes_and_goes_without_a_jump() {
+        let style = Some(EdgeStyle::HIGHLIGHT);
+        let colors = [Color::srgb(0.1, 0.2, 0.3), Color::BLACK];
+        let at = |a, b, t| EdgeStyle::between(a, b, colors, t).expect("a style");
+        let color = |color| EdgeColor::Ink { color };
+        let first = at(None, style, 0.0);
+        assert_eq!((first.color, first.opacity), (color(colors[0]), 1.0));
+        assert!(at(None, style, 0.49).opacity < 0.1 && at(None, style, 0.51).opacity < 0.1);
+        assert_eq!(at(None, style, 1.0), EdgeStyle::HIGHLIGHT);
+        let last = at(style, None, 1.0);
+        assert_eq!((last.color, last.opacity), (color(colors[1]), 1.0));
+        assert_eq!(EdgeStyle::between(None, None, colors, 0.5), None);
     }
 }

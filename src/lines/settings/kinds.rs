@@ -156,8 +156,8 @@ pub enum CreaseSource {
     /// [`MeshSections`](crate::objects::MeshSections).
     Normals,
     /// At the edges of meshes. Normals are not read, so normal maps have no creases, and the camera
-    /// needs no normal prepass (but for [`LineEdge::Hard`], which chooses its side by normals). Meshes
-    /// that are left out have no creases.
+    /// needs no normal prepass, but for [`LineEdge::Hard`], which chooses its side by normals, and
+    /// [`EdgeStyle::unlit_opacity`]. Meshes that are left out have no creases.
     Meshes,
     /// In the normals of pixels, and at the edges of meshes.
     #[default]
@@ -331,8 +331,8 @@ impl Blend for Creases {
             softness: self.softness.lerp(other.softness, t),
             color: blend_color(self.color, other.color, t),
             opacity: self.opacity.lerp(other.opacity, t),
-            convex: EdgeStyle::blend(self.convex, other.convex, t),
-            concave: EdgeStyle::blend(self.concave, other.concave, t),
+            convex: EdgeStyle::between(self.convex, other.convex, [self.color, other.color], t),
+            concave: EdgeStyle::between(self.concave, other.concave, [self.color, other.color], t),
         }
     }
 }

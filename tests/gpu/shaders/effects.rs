@@ -71,7 +71,12 @@ fn line_forms() -> Vec<Definitions> {
         optional(&["SURFACE_LINES", "DEPTH_BORDERS"]),
         vec![Vec::new(), flags(&["OBJECT_DEPTHS", "OBJECT_IDS"])],
     ]);
-    let plain = vec![Vec::new(), flags(&["LINE_OWNERS", "SURFACE_LINES"])];
+    let plain = vec![
+        Vec::new(),
+        flags(&["LINE_OWNERS", "SURFACE_LINES"]),
+        flags(&["LINE_OWNERS", "EDGE_STYLES"]),
+        flags(&["LINE_OWNERS", "EDGE_STYLES", "SURFACE_LINES"]),
+    ];
     product(&[[plain, in_layers].concat(), optional(&["OBJECT_STYLES"])])
 }
 

@@ -172,6 +172,7 @@ fn settling() -> Vec<Variant> {
         "| NIB_WEIGHT",
         "| TAPER_WEIGHT",
         "| BUDGET",
+        "| EDGE_STYLES | EDGE_STYLES LIT_EDGES | EDGE_STYLES LIT_EDGES HARD",
         "| FOG",
         "| DISTANCE_FADE | DISTANCE_FADE MIDDLE_DEPTH",
         "| IN_LAYERS | IN_LAYERS DEPTH_BORDERS | IN_LAYERS OBJECT_DEPTHS",
@@ -191,13 +192,19 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
         _ => true,
     });
     let surface = has_any(&names, &["LIGHT_WEIGHT", "WIDTH_MAP"]);
-    let along = ["KIND_WEIGHT", "NIB_WEIGHT", "TAPER_WEIGHT", "BUDGET"];
+    let along = [
+        "KIND_WEIGHT",
+        "NIB_WEIGHT",
+        "TAPER_WEIGHT",
+        "BUDGET",
+        "EDGE_STYLES",
+    ];
     let around = ["FOG", "DISTANCE_FADE"];
     let weight = surface || reads_map || has_any(&names, &along) || has_any(&names, &around);
     if surface {
         names.push("SURFACE_WEIGHT");
     }
-    if has(&names, "LIGHT_WEIGHT") {
+    if has_any(&names, &["LIGHT_WEIGHT", "LIT_EDGES"]) {
         names.push("NORMALS");
     }
     if has(&names, "OBJECT_DEPTHS") {
@@ -218,7 +225,7 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
 fn drawing() -> Vec<Variant> {
     const STROKES: &[&str] = &[
         "| OBJECT_STYLES",
-        "| SURFACE | SURFACE INWARD",
+        "| SURFACE | SURFACE INWARD | SURFACE EDGE_STYLES",
         "| BOIL",
         "| TAPER_WEIGHT",
         "| SPREAD",
@@ -229,7 +236,7 @@ fn drawing() -> Vec<Variant> {
         "| BLOCKS | BLOCKS COMPLETED | BLOCKS COMPLETED SMOOTH",
         "| VARIED",
         "| OBJECT_STYLES",
-        "| SURFACE | SURFACE INWARD",
+        "| SURFACE | SURFACE INWARD | SURFACE EDGE_STYLES",
         "| BRIDGED",
         "| BOIL",
         "| SPREAD",
