@@ -133,16 +133,16 @@ fn rotations(
 }
 
 /// Truth: all creases of a solid are convex, and all of a room are concave, at 45 to 120 degrees.
-fn assert_signs(sources: &[CreaseSource], count: u32) {
+fn assert_signs(shapes: &[u32], sources: &[CreaseSource], count: u32) {
     let mut small = Small::new(SIZE, Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.empty_view(msaa, Color::WHITE);
-        for sides in [3, 4, 8] {
+        for &sides in shapes {
             for source in sources {
                 let solid = rotations(&mut small, sides, false, (*source, count));
                 let room = rotations(&mut small, sides, true, (*source, count));
                 println!("{msaa:?}, {sides} sides, {source:?}: {solid:?}, {room:?}");
-                let least = 100 * count as usize;
+                let least = 40 * count as usize;
                 assert!(
                     solid[0] > least && solid[1] == 0,
                     "{sides} sides: {solid:?}"
@@ -156,13 +156,14 @@ fn assert_signs(sources: &[CreaseSource], count: u32) {
 
 #[test]
 fn solids_are_convex_and_rooms_concave() {
-    assert_signs(&[CreaseSource::Both], 4);
+    assert_signs(&[3, 8], &[CreaseSource::Both], 3);
 }
 
 #[test]
 #[ignore = "long: 64 rotations"]
 fn all_solids_are_convex_and_all_rooms_concave() {
-    assert_signs(&[CreaseSource::Normals, CreaseSource::Meshes], 64);
+    let sources = [CreaseSource::Normals, CreaseSource::Meshes];
+    assert_signs(&[3, 4, 8], &sources, 64);
 }
 
 /// A wall with a plate before it, 5 cm in front, as one mesh, at 20 m: the sides of the plate are
