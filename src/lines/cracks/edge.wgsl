@@ -174,8 +174,8 @@ fn step_excess(
 // How the depths of six pixels in a row depart from a plane in their middle, beyond four times what
 // they bend beside it: 0 or less on planes and curves.
 struct Departures {
-    // The step between the two in the middle, and the larger of those on both sides of it and of those
-    // over two pixels, of which the middle is one half: a face that is about a pixel wide.
+    // The step between the two in the middle; and the largest of those on both sides of it and of those
+    // over two pixels, the middle and one beside it, as at a face that is about a pixel wide.
     step: vec4<f32>,
     beside: vec4<f32>,
     // How much the slope changes between them.
@@ -317,6 +317,10 @@ struct Crack {
 
 // Half of the smallest width of a line in physical pixels: a thinner one is fainter.
 const THINNEST: f32 = 0.3;
+
+// Signs of creases, if convex and concave ones differ; 0 for none.
+const CONCAVE: i32 = 1;
+const CONVEX: i32 = 2;
 
 const SILHOUETTE: u32 = 1u;
 const CREASE: u32 = 2u;

@@ -62,9 +62,9 @@ pub struct ViewCracks {
     /// The part of the depth texture: x, y, width, height in pixels.
     pub rect: UVec4,
     /// For each pixel the crack to the east, then that to the south; 0 for none. Bits 0 to
-    /// 2: kinds (silhouette, crease, object edge; both of the first two: a convex crease that has an
-    /// `EdgeStyle`, or all others have one); bit 3: the line belongs to the pixel itself, not to its neighbour; bits 4 to 11: ink; 12 to 19: opacity, both from 0 to
-    /// 255; 20 to 31: half the width.
+    /// 2: kinds (silhouette, crease, object edge; with an `EdgeStyle`, both of the first two are a
+    /// convex crease); bit 3: the line belongs to the pixel itself, not to its neighbour; bits 4
+    /// to 11: ink; 12 to 19: opacity, both from 0 to 255; 20 to 31: half the width.
     pub words: Buffer,
     /// Where cracks are: words of 32 pixels of a column, bit 0 at the top. Eight planes, each
     /// from left to right and then down: cracks to the east and to the south that are parts of

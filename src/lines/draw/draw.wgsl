@@ -10,7 +10,7 @@
 #endif
 #import bevy_comics::lines::coverage::{disc_coverage, segment_coverage}
 #import bevy_comics::lines::edge::{
-    OBJECT, encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
+    CONCAVE, CONVEX, OBJECT, encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
     unpack_middle, unpack_owner, unpack_width,
 }
 #ifdef BRIDGED
@@ -47,14 +47,10 @@ struct Drawn {
     @location(0) ink: vec4<f32>,
 #ifdef SURFACE
     // x, y: from the pixel to the one that owns the strongest line, in pixels of the viewport;
-    // z: what the crease is, see below.
+    // z: the sign of the crease, see edge.wgsl.
     @location(1) owner: vec4<i32>,
 #endif
 }
-
-// Of creases, if convex and concave ones differ.
-const CONCAVE: i32 = 1;
-const CONVEX: i32 = 2;
 
 // What is known of the lines at a position.
 struct Ink {

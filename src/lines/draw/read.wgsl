@@ -12,7 +12,7 @@
 #import bevy_comics::lines::surface::surface_ink
 #endif
 #ifdef EDGE_STYLES
-#import bevy_comics::lines::edge::{EDGE_INK, EDGE_SURFACE, EdgeInk}
+#import bevy_comics::lines::edge::{CONVEX, EDGE_INK, EDGE_SURFACE}
 #import bevy_comics::lines::surface::lightened
 #endif
 
@@ -64,7 +64,7 @@ fn set_line_ink(ink: vec4<f32>) {
 struct Found {
     ink: vec3<f32>,
     slot: u32,
-    // EDGE_STYLES: 1 if the crease is concave, 2 if it is convex.
+    // EDGE_STYLES: the sign of the crease, see edge.wgsl.
     sign: i32,
 }
 
@@ -130,7 +130,7 @@ fn crease_color(sign: i32) -> vec3<f32> {
         return otherwise;
     }
     var edge = lines_drawn.concave;
-    if sign == 2 {
+    if sign == CONVEX {
         edge = lines_drawn.convex;
     }
 #ifdef SURFACE_LINES

@@ -4,7 +4,7 @@
 #import bevy_comics::lines::boil::boiled
 #endif
 #import bevy_comics::lines::coverage::segment_coverage
-#import bevy_comics::lines::edge::{CREASE, OBJECT, encode_ink, ink_of, is_convex, unpack_width}
+#import bevy_comics::lines::edge::{CONCAVE, CONVEX, CREASE, OBJECT, encode_ink, ink_of, is_convex, unpack_width}
 #import bevy_comics::lines::pass::line_pass
 #ifdef TAPER_WEIGHT
 #import bevy_comics::lines::overshoot::stroke_width
@@ -111,7 +111,7 @@ fn stroke(at: Corner) -> Drawn {
     let offset = vec2<i32>(floor(owner)) - vec2<i32>(at.position.xy);
     var sign = 0;
 #ifdef EDGE_STYLES
-    sign = select(select(0, 1, (at.line.x & (CREASE | OBJECT)) == CREASE), 2, is_convex(at.line.x));
+    sign = select(select(0, CONCAVE, (at.line.x & (CREASE | OBJECT)) == CREASE), CONVEX, is_convex(at.line.x));
 #endif
     drawn.owner = vec4(clamp(offset, vec2(-127), vec2(127)), sign, 0);
 #endif

@@ -163,9 +163,9 @@ fn sections_of(s: Lines, marks: vec4<u32>) -> vec4<u32> {
     return select(sections, vec4(0u), found & vec4(s.found_sections == 0u));
 }
 
-// Whether the surface has a step at the next crack, or over two pixels. In a multisampled view, the depth of a pixel may
-// be that of another sample than its section, see resolve.wgsl. A step that separates two surfaces, or
-// has a silhouette that is certain, has its line.
+// Whether the surface has a step at the next crack, or over two pixels. In a multisampled view, the
+// depth of a pixel may be that of another sample than its section, see resolve.wgsl. A step that
+// separates two surfaces, or has a silhouette that is certain, has its line.
 fn has_step_beside(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
     let beside = at.departs.beside;
     let has_step = (beside > STEP * reference) & (beside < s.jump * reference);

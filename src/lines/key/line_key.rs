@@ -188,7 +188,6 @@ impl LineKey {
 
     pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
-        let weight = &lines.weight;
         let forms = [
             lines.silhouettes.map(|s| s.equations),
             lines.creases.map(|c| c.equations),
@@ -197,11 +196,7 @@ impl LineKey {
         let faithful = forms.map(|form| form == Some(Equations::Faithful));
         let object_edges = lines.objects.is_some() && request.ids;
         let rims = silhouettes && (creases || object_edges);
-        let kinds = [weight.outer, weight.inner, weight.crease, weight.object];
-        let layers = request.layers.as_ref();
-        let [fewer, fainter] = (request.simplification)
-            .map(|s| [s.threshold > 1.0, s.crease_opacity < 1.0])
-            .unwrap_or_default();
+        let fewer = request.simplification.is_some_and(|s| s.threshold > 1.0);
         let multisampled = request.samples > 1;
         let search = request.search();
         let flags = [
@@ -232,6 +227,41 @@ impl LineKey {
             (rims && lines.links(), Self::RIMS),
             (lines.gap_closing > 0, Self::BRIDGED),
             (lines.is_smooth(), Self::SMOOTH),
+            (true, Self::BLOCKS),
+            (search == Search::Neighbours, Self::NEIGHBOURS),
+            (search == Search::Columns, Self::COLUMNS),
+            (request.needs_owners(), Self::SURFACE),
+            (request.needs_owners() && multisampled, Self::INWARD),
+            (lines.boil.moves(), Self::BOIL),
+            (lines.edge == LineEdge::Hard, Self::HARD),
+            (request.sheet.ink_bleed > 0.0, Self::SPREAD),
+            (request.sheet.dry_brush > 0.0, Self::STREAKS),
+        ];
+        let flags = flags.into_iter().chain(Self::weights(request));
+        let set = flags.filter(|(on, _)| *on);
+        let mut key: Self = set.map(|(_, flag)| flag).collect();
+        if by_fragments {
+            key.remove(Self::COMPUTED);
+        }
+        let lines = Self::SILHOUETTES | Self::CREASES | Self::OBJECT_EDGES;
+        let folds = key.contains(Self::CREASES | Self::SMOOTH);
+        key | key.when(lines, Self::CRACKS)
+            | key.when(Self::WEIGHTS | Self::SMOOTH, Self::COMPLETED)
+            | key.when(Self::WEIGHTS, Self::WEIGHT)
+            | key.when(Self::VARYING, Self::VARIED)
+            | key.when(Self::OBJECT_STYLES | Self::SURFACE, Self::OWNERS)
+            | if folds { Self::FOLDS } else { Self::empty() }
+            | Self::from_bits_retain(u128::from(request.map_flags) << MAP_FLAGS)
+    }
+
+    /// Which factors of width and opacity are not 1, and what they depend on.
+    fn weights(request: &LineRequest) -> impl Iterator<Item = (bool, Self)> {
+        let lines = &request.settings;
+        let weight = &lines.weight;
+        let kinds = [weight.outer, weight.inner, weight.crease, weight.object];
+        let layers = request.layers.as_ref();
+        let fainter = (request.simplification).is_some_and(|s| s.crease_opacity < 1.0);
+        [
             (kinds != [1.0; 4], Self::KIND_WEIGHT),
             (weight.reads_ids(), Self::OUTER_WEIGHT),
             (weight.reads_normals(), Self::LIGHT_WEIGHT),
@@ -252,30 +282,8 @@ impl LineKey {
             (lines.has_lit_edges(), Self::LIT_EDGES),
             (fainter, Self::SIMPLIFIED_CREASES),
             (request.weighs_by_objects(), Self::WEIGHS_BY_OBJECTS),
-            (true, Self::BLOCKS),
-            (search == Search::Neighbours, Self::NEIGHBOURS),
-            (search == Search::Columns, Self::COLUMNS),
-            (request.needs_owners(), Self::SURFACE),
-            (request.needs_owners() && multisampled, Self::INWARD),
-            (lines.boil.moves(), Self::BOIL),
-            (lines.edge == LineEdge::Hard, Self::HARD),
-            (request.sheet.ink_bleed > 0.0, Self::SPREAD),
-            (request.sheet.dry_brush > 0.0, Self::STREAKS),
-        ];
-        let set = flags.into_iter().filter(|(on, _)| *on);
-        let mut key: Self = set.map(|(_, flag)| flag).collect();
-        if by_fragments {
-            key.remove(Self::COMPUTED);
-        }
-        let lines = Self::SILHOUETTES | Self::CREASES | Self::OBJECT_EDGES;
-        let folds = key.contains(Self::CREASES | Self::SMOOTH);
-        key | key.when(lines, Self::CRACKS)
-            | key.when(Self::WEIGHTS | Self::SMOOTH, Self::COMPLETED)
-            | key.when(Self::WEIGHTS, Self::WEIGHT)
-            | key.when(Self::VARYING, Self::VARIED)
-            | key.when(Self::OBJECT_STYLES | Self::SURFACE, Self::OWNERS)
-            | if folds { Self::FOLDS } else { Self::empty() }
-            | Self::from_bits_retain(u128::from(request.map_flags) << MAP_FLAGS)
+        ]
+        .into_iter()
     }
 
     /// These flags if the key has any of others.
