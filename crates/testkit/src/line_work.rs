@@ -136,10 +136,10 @@ pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
     }
     if path == SETTLE {
         // It would take the counts of cells for cracks.
-        let column = "    let band = first.y >> 5u;";
-        assert!(text.contains(column), "a function of {path} has moved");
+        let cell = "    let linked_east = cell_bits(";
+        assert!(text.contains(cell), "a function of {path} has moved");
         return if counted == CELLS {
-            text.replace(column, &format!("    if true {{ return; }}\n{column}"))
+            text.replace(cell, &format!("    if true {{ return; }}\n{cell}"))
         } else {
             text.to_owned()
         };

@@ -80,8 +80,14 @@ fn bend_of(crack: vec3<i32>, seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
     return stairs_bend(line_pass.grid, crack, bend);
 }
 
-// How the line along the crack to the south of a pixel leaves it.
-fn bend_south(g: Grid, p: vec2<i32>) -> u32 {
+// The run of a crack, see line_bend: its cracks up to this one and from this one on, and the signs of
+// its ends.
+struct Run {
+    seen: vec2<u32>,
+    signs: vec2<f32>,
+}
+
+fn run_south(g: Grid, p: vec2<i32>) -> Run {
     let before = countLeadingZeros(~row_window(g, p.x - 31, p.y));
     let after = countTrailingZeros(~row_window(g, p.x, p.y));
     let first = p.x - i32(before);
@@ -89,11 +95,10 @@ fn bend_south(g: Grid, p: vec2<i32>) -> u32 {
     let single = before + after == 2u;
     let sign_before = end_sign(column_window(g, LINKED_EAST, first, p.y - 1), single);
     let sign_after = end_sign(column_window(g, LINKED_EAST, last, p.y - 1), single);
-    return pack_bend(bend_of(vec3(p, 1), vec2(before, after), vec2(sign_before, sign_after)));
+    return Run(vec2(before, after), vec2(sign_before, sign_after));
 }
 
-// The same of the crack to the east.
-fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
+fn run_east(g: Grid, p: vec2<i32>) -> Run {
     let before = countLeadingZeros(~column_window(g, LINKED_EAST, p.x, p.y - 31));
     let after = countTrailingZeros(~column_window(g, LINKED_EAST, p.x, p.y));
     let first = p.y - i32(before);
@@ -101,7 +106,7 @@ fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
     let single = before + after == 2u;
     let sign_before = end_sign(row_window(g, p.x - 1, first), single);
     let sign_after = end_sign(row_window(g, p.x - 1, last), single);
-    return pack_bend(bend_of(vec3(p, 0), vec2(before, after), vec2(sign_before, sign_after)));
+    return Run(vec2(before, after), vec2(sign_before, sign_after));
 }
 #endif
 
@@ -337,97 +342,98 @@ fn is_speck(g: Grid, crack: vec3<i32>) -> bool {
     return back < most && back + cracks_to_end(g, crack, last_corner(crack), most - back) < most;
 }
 
-// Of the cracks of a pixel, 1 for each, those that are no specks.
-fn without_specks(g: Grid, p: vec2<i32>, cracks: vec2<u32>) -> vec2<u32> {
-    var kept = cracks;
-    if g.specks > 1 {
-        if kept.x != 0u && is_speck(g, vec3(p, 0)) {
-            kept.x = 0u;
-        }
-        if kept.y != 0u && is_speck(g, vec3(p, 1)) {
-            kept.y = 0u;
-        }
-    }
-    return kept;
-}
-
 #ifdef SMOOTH
-// How the lines along both cracks of a pixel leave them. `kept`: whether it has them.
-fn bends_of(p: vec2<i32>, kept: vec2<u32>, packed: vec2<u32>) -> u32 {
-    let g = line_pass.grid;
-    var bends = 0x80808080u;
-    if kept.x != 0u {
-        bends = (bends & 0xffff0000u) | bend_east(g, p);
-    }
-    if kept.y != 0u {
-        bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
+// How the line along a crack leaves it, packed. `kept`: whether it is one; `packed`: what the crack is.
+fn packed_bend(g: Grid, crack: vec3<i32>, kept: bool, packed: u32) -> u32 {
+    var bend = 0x8080u;
+    if kept {
+        var run: Run;
+        if crack.z == 1 {
+            run = run_south(g, crack.xy);
+        } else {
+            run = run_east(g, crack.xy);
+        }
+        bend = pack_bend(bend_of(crack, run.seen, run.signs));
     }
 #ifdef FOLDS
-    if (packed.x & CREASE) != 0u {
-        bends = (bends & 0xffff0000u) | crease_bend(g, vec3(p, 0), bends & 0xffffu);
-    }
-    if (packed.y & CREASE) != 0u {
-        bends = (bends & 0xffffu) | (crease_bend(g, vec3(p, 1), bends >> 16u) << 16u);
+    if (packed & CREASE) != 0u {
+        bend = crease_bend(g, crack, bend);
     }
 #endif
-    return bends;
+    return bend;
 }
 #endif
 
-// Leaves out the cracks of a column of a cell that are not part of a line, and bends the
-// lines of the others. Bits are rows.
-fn settle_column(g: Grid, first: vec2<i32>) {
-    let band = first.y >> 5u;
-    let from_top = u32(first.y & 31);
-    var east = (load_column(g, FOUND_EAST, first.x, band) >> from_top) & 0xffu;
-    var south = (load_column(g, FOUND_SOUTH, first.x, band) >> from_top) & 0xffu;
-    let linked_east = load_column(g, LINKED_EAST, first.x, band) >> from_top;
-    let linked_south = load_column(g, LINKED_SOUTH, first.x, band) >> from_top;
-#ifdef LEDGES
-    east |= (load_column(g, LEDGE_EAST, first.x, band) >> from_top) & 0xffu;
-    south |= (load_column(g, LEDGE_SOUTH, first.x, band) >> from_top) & 0xffu;
-#endif
-#ifdef BRIDGED
-    east |= linked_east & 0xffu;
-    south |= linked_south & 0xffu;
-#endif
-    var rows = east | south;
-    while rows != 0u {
-        let row = firstTrailingBit(rows);
-        rows &= rows - 1u;
-        let p = first + vec2(0, i32(row));
-        let kept = without_specks(g, p, vec2((linked_east >> row) & 1u, (linked_south >> row) & 1u));
-        let lost = vec2((east >> row) & 1u, (south >> row) & 1u) > kept;
-        let at = p.y * g.rect.z + p.x;
-        var bends = 0x80808080u;
+// Leaves out a crack that is not part of a line, and bends and weighs the line of the others. `linked`:
+// whether it was linked; `beside`: for a crack to the south, whether that to the east of its pixel
+// is settled already.
+fn settle_crack(g: Grid, crack: vec3<i32>, linked: bool, beside: bool) {
+    let kept = linked && !(g.specks > 1 && is_speck(g, crack));
+    let at = crack.y * g.rect.z + crack.x;
+    var bend = 0x8080u;
 #ifdef EDITS
-        let stored = crack_words[at];
-        var packed = select(stored, vec2(0u), lost);
+    var packed = select(0u, crack_words[at][crack.z], kept);
 #ifdef RIMS
-        packed = vec2(with_rim(vec3(p, 0), packed.x), with_rim(vec3(p, 1), packed.y));
+    packed = with_rim(crack, packed);
 #endif
 #endif
 #ifdef SMOOTH
 #ifdef FOLDS
-        bends = bends_of(p, kept, packed);
+    bend = packed_bend(g, crack, kept, packed);
 #else
-        bends = bends_of(p, kept, vec2(0u));
+    bend = packed_bend(g, crack, kept, 0u);
 #endif
-        bend_words[at] = bends;
+    let other = select(0x80808080u, bend_words[at], beside);
+    bend_words[at] = insertBits(other, bend, 16u * u32(crack.z), 16u);
 #endif
 #ifdef WEIGHT
-        packed = vec2(
-            weighed(vec3(p, 0), packed.x, bends & 0xffffu),
-            weighed(vec3(p, 1), packed.y, bends >> 16u),
-        );
+    packed = weighed(crack, packed, bend);
 #endif
 #ifdef EDITS
-        crack_words[at] = packed;
+    crack_words[at][crack.z] = packed;
 #else
-        if any(lost) {
-            crack_words[at] = select(crack_words[at], vec2(0u), lost);
-        }
+    if !kept {
+        crack_words[at][crack.z] = 0u;
+    }
 #endif
+}
+
+// A plane's bits of a cell: eight rows of each of four columns.
+fn cell_bits(g: Grid, plane: i32, cell: vec2<i32>) -> u32 {
+    var bits = 0u;
+    for (var column = 0; column < COLUMNS; column++) {
+        let rows = load_column(g, plane, cell.x + column, cell.y >> 5u) >> u32(cell.y & 31);
+        bits = insertBits(bits, rows, u32(column * CELL_ROWS), u32(CELL_ROWS));
+    }
+    return bits;
+}
+
+// Settles the cracks of a cell, one after the other. On CPU adapters, several cells are settled at once, until
+// that with the most cracks is.
+fn settle_cell(g: Grid, cell: vec2<i32>) {
+    let linked_east = cell_bits(g, LINKED_EAST, cell);
+    let linked_south = cell_bits(g, LINKED_SOUTH, cell);
+    var east = cell_bits(g, FOUND_EAST, cell);
+    var south = cell_bits(g, FOUND_SOUTH, cell);
+#ifdef LEDGES
+    east |= cell_bits(g, LEDGE_EAST, cell);
+    south |= cell_bits(g, LEDGE_SOUTH, cell);
+#endif
+#ifdef BRIDGED
+    east |= linked_east;
+    south |= linked_south;
+#endif
+    let all_east = east;
+    while (east | south) != 0u {
+        let is_east = east != 0u;
+        let left = select(south, east, is_east);
+        let place = firstTrailingBit(left);
+        east = select(east, east & (east - 1u), is_east);
+        south = select(south & (south - 1u), south, is_east);
+        let pixel = cell + vec2<i32>(vec2(place / u32(CELL_ROWS), place % u32(CELL_ROWS)));
+        let linked = (select(linked_south, linked_east, is_east) >> place) & 1u;
+        let beside = !is_east && ((all_east >> place) & 1u) != 0u;
+        settle_crack(g, vec3(pixel, select(1, 0, is_east)), linked != 0u, beside);
     }
 }
 
@@ -448,10 +454,5 @@ fn settle(
     middle_of_cell = vec2<f32>(cell) + 0.5 * vec2(f32(COLUMNS), f32(CELL_ROWS));
     known_radius = -1.0;
 #endif
-    for (var column = 0; column < COLUMNS; column++) {
-        if cell.x + column >= g.rect.z {
-            break;
-        }
-        settle_column(g, cell + vec2(column, 0));
-    }
+    settle_cell(g, cell);
 }
