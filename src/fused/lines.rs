@@ -96,12 +96,14 @@ pub(super) fn plain_request(
 ) -> Option<LineRequest> {
     let (depth_size, samples) = scene.depth?;
     let reference = view.projection.jump_reference(&view.clip_from_view);
+    let drawn = scene.drawn();
+    let bend = (view.projection).least_bend(&view.clip_from_view, drawn.zw(), samples);
     let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
         camera: view.camera,
         settings,
         view: uniform,
-        lines: settings.uniform(view.scale_factor, reference),
+        lines: settings.uniform(view.scale_factor, reference, bend),
         weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
         boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
         memory: memory_request(view, &settings, scene),
@@ -116,7 +118,7 @@ pub(super) fn plain_request(
         depth_size,
         samples,
         size: scene.viewport.zw(),
-        rect: scene.drawn(),
+        rect: drawn,
         jitter: scene.jitter,
         reach: 0,
         steps: settings.steps(grid_scale),

@@ -136,6 +136,124 @@ fn other_edges_do_not_move_creases() {
     }
 }
 
+/// A normal map of squares that lean by 45 degrees to one side and the other.
+fn studs(small: &mut Small) -> Handle<Image> {
+    let lean = |n: u32| if n.is_multiple_of(2) { 218 } else { 38 };
+    let squares = (0..16).flat_map(|y| (0..16).map(move |x| [lean(x + y), 128, 218, 255]));
+    let size = Extent3d {
+        width: 16,
+        height: 16,
+        ..default()
+    };
+    let data: Vec<u8> = squares.flatten().collect();
+    let (dimension, format) = (TextureDimension::D2, TextureFormat::Rgba8Unorm);
+    let mut image = Image::new(size, dimension, data, format, RenderAssetUsages::default());
+    image.sampler = bevy::image::ImageSampler::nearest();
+    small.world().resource_mut::<Assets<Image>>().add(image)
+}
+
+/// A cube with a normal map, seen along one of its edges: the bumps have lines only if they are asked
+/// for, and the edge has its line.
+#[test]
+fn bumps_of_normal_maps_have_no_creases() {
+    let mut small = towards_the_sky(SIZE);
+    let bumpy = StandardMaterial {
+        emissive: LinearRgba::WHITE,
+        normal_map_texture: Some(studs(&mut small)),
+        ..default()
+    };
+    let cube = Mesh::from(Cuboid::from_length(300.0)).with_generated_tangents();
+    let cube = small.put(cube.expect("it has uvs"), bumpy, leaning(0.3, 0.0));
+    small.world().entity_mut(cube).insert(MeshSections::NONE);
+    let mut bumps = |normal_maps| {
+        let creases = Creases {
+            normal_maps,
+            ..default()
+        };
+        small.style(&ComicStyle::new().with(Outlines {
+            silhouettes: None,
+            objects: None,
+            creases: Some(creases),
+            width: WIDTH,
+            ..default()
+        }));
+        small.settle();
+        let picture = small.picture();
+        for y in 12..52 {
+            let edge = 48.0 - (31.5 - f64::from(y)) * 0.3f64.tan();
+            let middle = (edge - 4.0) as u32..(edge + 4.0) as u32;
+            let ink = black_ink(&picture, middle.map(|x| (x, y)));
+            let is_whole = ink > 0.9 * f64::from(WIDTH);
+            assert!(normal_maps || is_whole, "row {y}: {ink}");
+        }
+        let is_beside = |x: u32, y: u32| {
+            let edge = 48.0 - (31.5 - f64::from(y)) * 0.3f64.tan();
+            (f64::from(x) + 0.5 - edge).abs() > 6.0
+        };
+        let all = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
+        black_ink(&picture, all.filter(|(x, y)| is_beside(*x, *y)))
+    };
+    assert_eq!(bumps(false), 0.0);
+    let found = bumps(true);
+    assert!(found > 20.0, "{found}");
+}
+
+/// Two walls at a right angle with a bevel of this width between them, over which their normals turn.
+fn bevel(width: f32) -> Mesh {
+    let across = [
+        (-80.0, -80.0, -1.0),
+        (-0.5 * width, 0.0, -1.0),
+        (0.5 * width, 0.0, 1.0),
+        (80.0, -80.0, 1.0f32),
+    ];
+    let both = across.map(|at| [(at, -60.0), (at, 60.0f32)]);
+    let vertices = both.as_flattened();
+    let positions: Vec<[f32; 3]> = vertices.iter().map(|((x, z, _), y)| [*x, *y, *z]).collect();
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let normals: Vec<[f32; 3]> = (vertices.iter())
+        .map(|((_, _, side), _)| [side * half, 0.0, half])
+        .collect();
+    let quads = [0, 2, 4].map(|i| [i, i + 2, i + 1, i + 2, i + 3, i + 1]);
+    Mesh::new(bevy::mesh::PrimitiveTopology::TriangleList, default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_indices(Indices::U32(quads.concat()))
+}
+
+/// Normals fold most in the middle of a smooth bevel, where depth does not bend: no line is lost there.
+#[test]
+fn smooth_bevels_keep_their_creases() {
+    let mut small = towards_the_sky(SIZE);
+    for width in [1.0, 2.0, 3.0, 3.5] {
+        towards_the_sky_again(&mut small, Msaa::Off);
+        let at = Transform::from_xyz(0.0, 0.0, -400.0);
+        let bevel = small.put(bevel(width), unlit(Color::WHITE), at);
+        small.world().entity_mut(bevel).insert(MeshSections::NONE);
+        let mut ink = |normal_maps| {
+            let creases = Creases {
+                normal_maps,
+                ..default()
+            };
+            small.style(&ComicStyle::new().with(Outlines {
+                silhouettes: None,
+                objects: None,
+                creases: Some(creases),
+                ..default()
+            }));
+            small.settle();
+            [0.0, 0.2, 0.4, 0.6, 0.8].map(|shift| {
+                let at = Transform::from_xyz(shift, 0.0, -400.0);
+                let picture = moved(&mut small, bevel, at);
+                let rows = (12..52).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
+                black_ink(&picture, rows)
+            })
+        };
+        let [found, want] = [ink(false), ink(true)];
+        assert!(want.iter().any(|ink| *ink > 20.0), "{width}: {want:?}");
+        assert_eq!(found, want, "{width}");
+    }
+}
+
 /// Where the picture is abstract, creases lose opacity, by the abstraction of their object. The
 /// ink of six pixels is rounded by less than 0.01 each.
 #[test]

@@ -101,8 +101,26 @@ pub fn view_of<'a>(
         ids: prepass.ids.first(),
         widths: prepass.widths.first(),
         height: orthographic(small).map_or(0.0, |p| f64::from(p.area.height())),
+        least_bend: least_bend(small, viewport, depth.samples),
         to_light: to_light(small),
     }
+}
+
+/// Of [`View`]. The view is symmetric.
+fn least_bend(small: &Small, [.., width, height]: [u32; 4], samples: u32) -> f64 {
+    let camera = small.headless.app.world().get::<Camera>(small.camera);
+    let matrix = camera.expect("it is a camera").clip_from_view();
+    let half = [matrix.x_axis.x, matrix.y_axis.y].map(|scale| 1.0 / f64::from(scale));
+    let pixel = f64::min(
+        2.0 * half[0] / f64::from(width),
+        2.0 * half[1] / f64::from(height),
+    );
+    let over = match orthographic(small) {
+        Some(_) => half[1] / 22.5f64.to_radians().tan(),
+        None => 1.0 + half[0] * half[0] + half[1] * half[1],
+    };
+    let sampled = if samples > 1 { 0.64 } else { 1.0 };
+    2f64.sqrt() * sampled * pixel / over
 }
 
 /// Whether an effect reads the picture at other places, so that there is more than one pass.

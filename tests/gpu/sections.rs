@@ -173,7 +173,11 @@ fn cameras_choose_what_creases_are_found_by() {
         wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
         let at = Transform::from_xyz(0.0, 0.0, -100.0);
         small.put(bent_by_normals(), unlit(Color::WHITE), at);
-        let bent = ink(&mut small, creases_of(source));
+        let smooth = ink(&mut small, creases_of(source));
+        assert!(smooth < 1.0, "{source:?}: {smooth}");
+        let mut with_bumps = creases_of(source);
+        with_bumps.creases.as_mut().expect("creases").normal_maps = true;
+        let bent = ink(&mut small, with_bumps);
         assert_eq!(bent > 20.0, source != Meshes, "{source:?}: {bent}");
     }
     // Edges that one camera asks for are no creases of another one.

@@ -71,7 +71,7 @@ struct End {
 }
 
 /// The end of the pass that finds cracks in cells.
-const CELLS_END: &str = "        east_1 = east.packed;
+const CELLS_END: &str = "        east_before = east.packed;
     }
 ";
 
@@ -85,7 +85,7 @@ const ENDS: [End; 4] = [
     End {
         file: CELLS,
         result: CELLS_END,
-        counted: "        east_1 = east.packed;
+        counted: "        east_before = east.packed;
     }
     crack_words[cell.y * line_pass.grid.rect.z + cell.x] = vec2(packed_count(), 0u);
 ",

@@ -63,7 +63,9 @@ struct Lines {
     found_sections: u32,
     // 1 where folds of normals are creases; otherwise 0.
     normal_creases: u32,
-    unused_y: f32,
+    // How much raw depth bends at least at a fold of 90 degrees, as a fraction of what a jump is one of; see
+    // DepthProjection::least_bend.
+    bend: f32,
     convex: EdgeInk,
     concave: EdgeInk,
 }
@@ -294,6 +296,14 @@ fn may_be_silhouette(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool>
 fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
     let least = mix(s.crease_low, s.crease_high, INVISIBLE);
     return folds > vec4(BELOW * 4.0 * s.crease_k * s.crease_k * least);
+}
+
+// How much raw depth bends at least at a fold that may be a crease, as a fraction of what a jump is
+// one of: in proportion to the tangent of half of its angle.
+fn least_crease_bend(s: Lines) -> f32 {
+    let least = s.crease_k * s.crease_k * mix(s.crease_low, s.crease_high, INVISIBLE);
+    let squared = min(least, 0.99);
+    return s.bend * sqrt(squared / (1.0 - squared));
 }
 
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east

@@ -115,27 +115,23 @@ fn find_in_cells(
     let last = line_pass.grid.rect.zw - 1;
     let columns = four_columns(line_pass.grid.rect, cell.x);
     var above: Above;
-    // Cracks to the east in the rows above: 1 is the row above the newest one.
-    var east_1 = vec4(0u);
-    var east_2 = vec4(0u);
-    var east_3 = vec4(0u);
+    // Cracks to the east in the row above those that were found last.
+    var east_before = vec4(0u);
     var all_east: Bits;
     var all_south: Bits;
     for (var i = -2; i <= CELL_ROWS + 2; i++) {
         let borders = step_down(&above, columns, cell.y + i);
         let east = cracks(s, borders.east);
         let south = cracks(s, borders.south);
-        if i >= 0 && i < CELL_ROWS && cell.y + i <= last.y {
-            add_bits(&all_east, east, u32(i));
+        if i >= 2 && i <= CELL_ROWS + 1 && cell.y + i - 2 <= last.y {
+            add_bits(&all_east, east, u32(i - 2));
         }
         let y = cell.y + i - 3;
         if i >= 3 && y <= last.y {
             add_bits(&all_south, south, u32(i - 3));
-            store_row(vec2(cell.x, y), east_3, south.packed);
+            store_row(vec2(cell.x, y), east_before, south.packed);
         }
-        east_3 = east_2;
-        east_2 = east_1;
-        east_1 = east.packed;
+        east_before = east.packed;
     }
     let own = columns.own < vec4(0, 1, 2, 3) + cell.x;
     store_bits(cell, all_east, all_south, select(all_south.certain, vec4(0u), own));

@@ -10,7 +10,8 @@
 #import bevy_comics::lines::simplification::response_factor
 #endif
 #import bevy_comics::lines::edge::{
-    CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, ends_at_sky, fold_response, pack_ink, step_response,
+    CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, ends_at_sky, fold_response, least_crease_bend, pack_ink,
+    step_response,
 }
 #ifdef LEDGES
 #import bevy_comics::lines::ledge::may_be_ledge
@@ -149,8 +150,9 @@ const LAST_FOUND: u32 = 63u;
 const LAST_ALONE: u32 = 127u;
 const LAST_FOUND_IN_GROUP: u32 = 190u;
 const SILENT: u32 = 255u;
-// The fold of 10 degrees.
+// The fold of 10 degrees, and the tangent of half of it.
 const BENT: f32 = 0.0304;
+const BENT_TANGENT: f32 = 0.0875;
 // A step, and a change of the slope per pixel, as fractions of what a jump is a fraction of.
 const STEP: f32 = 2e-5;
 const TURN: f32 = 5e-5;
@@ -187,7 +189,11 @@ fn section_borders(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
     let asked_here = (here > vec4(LAST_FOUND)) & (here <= vec4(LAST_ALONE));
     let asked_there = (there > vec4(LAST_FOUND)) & (there <= vec4(LAST_ALONE));
 #ifdef NORMALS
+#ifdef BENDS
+    let bends = (at.folds > vec4(BENT)) & (at.bend > vec4(BENT_TANGENT * s.bend));
+#else
     let bends = at.folds > vec4(BENT);
+#endif
 #else
     let bends = at.departs.turn > TURN * reference;
 #endif
@@ -205,7 +211,10 @@ fn are_silent(at: Borders) -> vec4<bool> {
 // A crease is no silhouette, and both sides meet there: no jump in depth separates them.
 fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here: vec4<u32>, there: vec4<u32>) -> Found {
     var found = before;
-    let by_normals = vec4(s.normal_creases != 0u);
+    var by_normals = vec4(s.normal_creases != 0u);
+#ifdef BENDS
+    by_normals &= at.bend > vec4(least_crease_bend(s));
+#endif
     var response = fold_response(at.folds * response_factors(at), s.crease_k);
     var ridge = at.ridge & by_normals;
     var rim = at.rim & by_normals;

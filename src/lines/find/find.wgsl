@@ -49,6 +49,26 @@ fn object_at(at: vec2<i32>) -> vec2<u32> {
 }
 #endif
 
+#ifdef BENDS
+// How much raw depth bends at the three cracks in the middle of six pixels in a row, of which the third is at
+// this place between 0 and `last`; as fractions of what a jump is one of.
+fn bends(at: i32, last: i32, d: array<f32, 6>) -> vec3<f32> {
+    let s = line_pass.settings;
+    let places = vec4(at - 1, at, at + 1, at + 2);
+    let before = vec4(d[0], d[1], d[2], d[3]);
+    let here = vec4(d[1], d[2], d[3], d[4]);
+    let bend = abs(before - 2.0 * here + vec4(d[2], d[3], d[4], d[5]));
+    let all = select(vec4(0.0), bend, (places > vec4(0)) & (places < vec4(last)));
+    let near = max(here.xyz, here.yzw);
+    return (all.xyz + all.yzw) / max(s.reference_factor * near + s.reference_constant, vec3(1e-30));
+}
+
+// The larger of the first two.
+fn around(bends: vec3<f32>) -> f32 {
+    return max(bends.x, bends.y);
+}
+#endif
+
 // Lane x is the crack to the east, lane y the one to the south.
 @fragment
 fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
@@ -73,6 +93,25 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.outdone = is_outdone(before, at.here, at.there, beyond);
 #ifdef SECTIONS
     at.departs = departures(before_2, before, at.here, at.there, beyond, beyond_2);
+#endif
+#ifdef BENDS
+    let south_east = depth_at(origin, high.x, high.y);
+    let across = bends(p.x, last.x, array(before_2.x, before.x, centre, at.there.x, beyond.x, beyond_2.x));
+    let down = bends(p.y, last.y, array(before_2.y, before.y, centre, at.there.y, beyond.y, beyond_2.y));
+    // The third bends of these are not used.
+    let across_south = bends(p.x, last.x, array(
+        depth_at(origin, low_2.x, high.y), depth_at(origin, low.x, high.y), at.there.y,
+        south_east, depth_at(origin, high_2.x, high.y), 0.0,
+    ));
+    let down_east = bends(p.y, last.y, array(
+        depth_at(origin, high.x, low_2.y), depth_at(origin, high.x, low.y), at.there.x,
+        south_east, depth_at(origin, high.x, high_2.y), 0.0,
+    ));
+    let beside = max(around(across), around(down));
+    at.bend = max(
+        vec2(beside),
+        vec2(max(across.z, around(down_east)), max(down.z, around(across_south))),
+    ).xyxy;
 #endif
 #ifdef NORMALS
     let n = normal_at(origin + p);

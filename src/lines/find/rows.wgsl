@@ -8,6 +8,9 @@
 #import bevy_comics::lines::edge::{
     Departures, departures, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
 }
+#ifdef BENDS
+#import bevy_comics::lines::pass::line_pass
+#endif
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -43,6 +46,12 @@ fn four_columns(rect: vec4<i32>, x: i32) -> Columns {
 // depths[1] in the row above that. folds[0] are between these two rows.
 struct Above {
     depths: array<vec4<f32>, 5>,
+    // BENDS: depths of the next column to the east in the two rows above; how depth bends down, in the
+    // second row above; and the bends at cracks that were found before, the last ones first.
+    depths_east: vec2<f32>,
+    bend_down: Bends,
+    east_bends: array<Bends, 3>,
+    south_bends: array<Bends, 2>,
     // Normals of the row above, by column.
     normals: array<vec4<f32>, 4>,
     folds: array<vec4<f32>, 3>,
@@ -50,6 +59,16 @@ struct Above {
     facings: array<vec4<f32>, 3>,
     objects: array<vec4<u32>, 3>,
     marks: array<vec4<u32>, 3>,
+    // Without BOUNDS: borders to the east in the two rows above.
+    east: array<Borders, 2>,
+}
+
+// How much raw depth bends at four columns, and at those to the west and to the east of them; at cracks to the
+// south, only at the one to the east.
+struct Bends {
+    own: vec4<f32>,
+    west: f32,
+    east: f32,
 }
 
 // The borders between four pixels (here) and their neighbours (there). Without EXCESS
@@ -73,13 +92,16 @@ struct Borders {
     object_there: vec4<u32>,
     marks_here: vec4<u32>,
     marks_there: vec4<u32>,
+    // BENDS: how much raw depth bends at the crack, at the next ones on both sides of it, or at those that meet
+    // its ends at a right angle; as a fraction of what a jump is one of.
+    bend: vec4<f32>,
 }
 
 // What a new row shows.
 struct Found {
     // Raw depths to the west of the pixels.
     before: vec4<f32>,
-    // Borders to the east in the new row.
+    // Borders to the east: with BOUNDS in the new row, otherwise in the second row above it.
     east: Borders,
     // Borders between the third and the second row above it.
     south: Borders,
@@ -89,8 +111,64 @@ fn depth_at(c: Columns, x: i32, y: i32) -> f32 {
     return texel_depth(c.origin + vec2(x, y), 0);
 }
 
+#ifdef BENDS
+// Whether a place has neighbours on both sides, as 0 or 1.
+fn is_inside(at: vec4<i32>, last: i32) -> vec4<f32> {
+    return select(vec4(0.0), vec4(1.0), (at > vec4(0)) & (at < vec4(last)));
+}
+
+// What a jump is a fraction of, between pixels of these raw depths.
+fn reference_of(here: vec4<f32>, there: vec4<f32>) -> vec4<f32> {
+    let s = line_pass.settings;
+    return max(s.reference_factor * max(here, there) + s.reference_constant, vec4(1e-30));
+}
+
+// How much raw depth bends at the cracks to the east in a row. `west` and `east`: the depths beside `depth`.
+fn bends_to_east(c: Columns, west: vec2<f32>, depth: vec4<f32>, east: vec3<f32>) -> Bends {
+    let before = vec4(west.y, depth.xyz);
+    let beyond = vec4(depth.yzw, east.x);
+    let own = is_inside(c.own, c.last.x) * abs(before - 2.0 * depth + beyond);
+    let beside = is_inside(vec4(c.west.y, c.east.xy, 0), c.last.x).xyz * abs(vec3(
+        west.x - 2.0 * west.y + depth.x,
+        depth.w - 2.0 * east.x + east.y,
+        east.x - 2.0 * east.y + east.z,
+    ));
+    let ends = vec2(beside.x + own.x, beside.y + beside.z)
+        / reference_of(vec4(west.y, east.x, 0.0, 0.0), vec4(depth.x, east.y, 0.0, 0.0)).xy;
+    return Bends((own + vec4(own.yzw, beside.y)) / reference_of(depth, beyond), ends.x, ends.y);
+}
+
+// The larger bend at the cracks on both sides of every pixel, across.
+fn around(bends: Bends) -> vec4<f32> {
+    return max(bends.own, vec4(bends.west, bends.own.xyz));
+}
+
+// How much raw depth bends at the cracks between the two rows above the new row `row`, also in the column
+// to the east.
+fn bends_to_south(above: ptr<function, Above>, c: Columns, row: i32, depth: vec4<f32>, east: f32) -> Bends {
+    let is_row = is_inside(vec4(row - 1), c.last.y).x;
+    let here = (*above).depths[1];
+    let there = (*above).depths[0];
+    let here_east = (*above).depths_east.y;
+    let there_east = (*above).depths_east.x;
+    let before = (*above).bend_down;
+    (*above).bend_down = Bends(
+        is_row * abs(here - 2.0 * there + depth),
+        0.0,
+        is_row * abs(here_east - 2.0 * there_east + east),
+    );
+    (*above).depths_east = vec2(east, there_east);
+    return Bends(
+        (before.own + (*above).bend_down.own) / reference_of(here, there),
+        0.0,
+        (before.east + (*above).bend_down.east) / reference_of(vec4(here_east), vec4(there_east)).x,
+    );
+}
+#endif
+
 // Reads the depths of a row.
-fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<function, Found>) {
+fn step_depths(above: ptr<function, Above>, c: Columns, row: i32, found: ptr<function, Found>) {
+    let y = clamp(row, 0, c.last.y);
     let e = depth_at(c, c.east.x, y);
     let depth = vec4(depth_at(c, c.own.x, y), depth_at(c, c.own.y, y), depth_at(c, c.own.z, y), depth_at(c, c.own.w, y));
     let west = depth_at(c, c.west.y, y);
@@ -100,10 +178,13 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
     (*found).south.here = (*above).depths[2];
     (*found).south.there = (*above).depths[1];
 #ifdef EXCESS
-    let f = depth_at(c, c.east.y, y);
+    let west_2 = depth_at(c, c.west.x, y);
+    let east_2 = depth_at(c, c.east.y, y);
+    let before_2 = vec4(west_2, west, depth.xy);
+    let beyond = vec4(depth.zw, e, east_2);
+    let beyond_2 = vec4(depth.w, e, east_2, depth_at(c, c.east.z, y));
     (*found).east.excess = step_excess(
-        vec4(depth_at(c, c.west.x, y), west, depth.xy), (*found).before, depth,
-        (*found).east.there, vec4(depth.zw, e, f), vec4(depth.w, e, f, depth_at(c, c.east.z, y)),
+        before_2, (*found).before, depth, (*found).east.there, beyond, beyond_2,
     );
     (*found).south.excess = step_excess(
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
@@ -111,15 +192,36 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
 #ifndef BOUNDS
 #ifdef SECTIONS
     (*found).east.departs = departures(
-        vec4(depth_at(c, c.west.x, y), west, depth.xy), (*found).before, depth,
-        (*found).east.there, vec4(depth.zw, e, f), vec4(depth.w, e, f, depth_at(c, c.east.z, y)),
+        before_2, (*found).before, depth, (*found).east.there, beyond, beyond_2,
     );
     (*found).south.departs = departures(
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
     );
 #endif
-    (*found).east.outdone = is_outdone((*found).before, depth, (*found).east.there, vec4(depth.zw, e, f));
+    (*found).east.outdone = is_outdone((*found).before, depth, (*found).east.there, beyond);
     (*found).south.outdone = is_outdone((*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0]);
+#endif
+#ifdef BENDS
+    let to_east = bends_to_east(c, vec2(west_2, west), depth, vec3(e, east_2, beyond_2.w));
+    let to_south = bends_to_south(above, c, row, depth, e);
+    // Borders to the east are those of the second row above, those to the south are above it.
+    let south = (*above).south_bends;
+    let down = max(to_south.own, south[0].own);
+    let down_east = max(to_south.east, south[0].east);
+    let across = (*above).east_bends[1];
+    (*above).east[1].bend = max(
+        max(around(across), vec4(across.own.yzw, across.east)),
+        max(down, vec4(down.yzw, down_east)),
+    );
+    (*found).south.bend = max(
+        max(down, south[1].own),
+        max(around((*above).east_bends[2]), around(across)),
+    );
+    (*above).east_bends[2] = across;
+    (*above).east_bends[1] = (*above).east_bends[0];
+    (*above).east_bends[0] = to_east;
+    (*above).south_bends[1] = south[0];
+    (*above).south_bends[0] = to_south;
 #endif
 #endif
     (*above).depths[4] = (*above).depths[3];
@@ -223,12 +325,19 @@ fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
 fn step_down(above: ptr<function, Above>, c: Columns, row: i32) -> Found {
     let y = clamp(row, 0, c.last.y);
     var found: Found;
-    step_depths(above, c, y, &found);
+    step_depths(above, c, row, &found);
 #ifdef NORMALS
     step_normals(above, c, y, &found);
 #endif
 #ifdef OBJECT_IDS
     step_objects(above, c, y, &found);
+#endif
+#ifndef BOUNDS
+    // How depth bends beside the cracks of the new row is known with the next two.
+    let newest = found.east;
+    found.east = (*above).east[1];
+    (*above).east[1] = (*above).east[0];
+    (*above).east[0] = newest;
 #endif
     return found;
 }

@@ -127,11 +127,13 @@ bitflags! {
         /// Convex and concave creases differ; and whether in the light.
         const EDGE_STYLES = 1 << 62;
         const LIT_EDGES = 1 << 63;
+        /// Depth bends where normals make a crease.
+        const BENDS = 1 << 64;
     }
 }
 
 /// The lowest bit of the flags of the depth map.
-const MAP_FLAGS: u32 = 64;
+const MAP_FLAGS: u32 = 65;
 
 impl LineKey {
     /// What is in the buffer of the visible range.
@@ -209,6 +211,7 @@ impl LineKey {
             (silhouettes, Self::SILHOUETTES),
             (creases, Self::CREASES),
             (creases && lines.finds_by_normals(), Self::NORMALS),
+            (creases && lines.finds_bends(), Self::BENDS),
             (object_edges, Self::OBJECT_EDGES),
             (creases && request.sections && request.ids, Self::SECTIONS),
             (request.marks, Self::MARKS),
@@ -311,7 +314,12 @@ impl LineKey {
         let simplified = Self::SIMPLIFIED_LINES | Self::FINDS_BY_OBJECTS;
         let objects = Self::OBJECT_EDGES | Self::OBJECT_STYLES | Self::SECTIONS;
         let stored = Self::COMPLETED | Self::HARD;
-        self & (Self::FOUND | Self::OBJECT_STYLES | Self::FADING | simplified | stored)
+        self & (Self::FOUND
+            | Self::BENDS
+            | Self::OBJECT_STYLES
+            | Self::FADING
+            | simplified
+            | stored)
             | Self::DEPTH
             | self.when(Self::SILHOUETTES | Self::CREASES, Self::EXCESS)
             | self.when(objects | Self::FINDS_BY_OBJECTS, Self::OBJECT_IDS)

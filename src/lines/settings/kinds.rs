@@ -111,6 +111,9 @@ pub struct Creases {
     /// \[CL\] Eq. 2 is the sine of half of the angle.
     #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,
+    /// Whether normals alone make creases, such as those of normal maps. Otherwise depth must bend
+    /// there too. [`CreaseSource::Meshes`] and the faithful equations do not read it. Default: false.
+    pub normal_maps: bool,
     /// Sets how strong an edge must be to be inked; the higher, the fewer faint
     /// lines. It is the response at which a line has half of its ink. Range 0.01 to
     /// 0.99, default 0.5. The edge-limit-value of \[CL\].
@@ -152,8 +155,8 @@ pub struct Creases {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 pub enum CreaseSource {
-    /// In the normals of pixels, and at the borders of the meshes with
-    /// [`MeshSections`](crate::objects::MeshSections).
+    /// In the normals of pixels, where depth bends too (see [`Creases::normal_maps`]), and at the borders
+    /// of the meshes with [`MeshSections`](crate::objects::MeshSections).
     Normals,
     /// At the edges of meshes. Normals are not read, so normal maps have no creases, and the camera
     /// needs no normal prepass, but for [`LineEdge::Hard`], which chooses its side by normals, and
@@ -169,6 +172,7 @@ impl Creases {
         equations: Equations::Corrected,
         source: CreaseSource::Both,
         angle: 40.0,
+        normal_maps: false,
         edge_limit: 0.5,
         softness: 0.5,
         color: Color::BLACK,
@@ -319,13 +323,15 @@ impl Blend for Creases {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        (self.equations, self.source) == (other.equations, other.source)
+        let modes = |c: &Self| (c.equations, c.source, c.normal_maps);
+        modes(self) == modes(other)
     }
 
     fn mixed(self, other: Self, t: f32) -> Self {
         Self {
             equations: self.equations,
             source: self.source,
+            normal_maps: self.normal_maps,
             angle: self.angle.lerp(other.angle, t),
             edge_limit: self.edge_limit.lerp(other.edge_limit, t),
             softness: self.softness.lerp(other.softness, t),

@@ -348,6 +348,12 @@ impl Outlines {
         })
     }
 
+    /// Whether depth must bend where normals make a crease.
+    pub(crate) fn finds_bends(&self) -> bool {
+        let by_normals = |c: &Creases| c.source != CreaseSource::Meshes && !c.normal_maps;
+        self.creases.as_ref().is_some_and(by_normals)
+    }
+
     /// Whether any kind has the faithful equations, whose ink is not found along cracks.
     pub(crate) fn has_faithful(&self) -> bool {
         self.silhouettes

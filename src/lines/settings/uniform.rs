@@ -21,8 +21,9 @@ impl Outlines {
     }
 
     /// The settings as shaders take them. `scale` is physical pixels per logical
-    /// pixel, `reference` that of `DepthProjection::jump_reference`.
-    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2]) -> LinesUniform {
+    /// pixel, `reference` that of `DepthProjection::jump_reference`, `bend` that of
+    /// `DepthProjection::least_bend`.
+    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2], bend: f32) -> LinesUniform {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();
         let o = self.objects.unwrap_or_default();
@@ -71,7 +72,7 @@ impl Outlines {
             surface_saturate,
             found_sections: u32::from(self.divides_meshes()),
             normal_creases: u32::from(c.source != CreaseSource::Meshes),
-            unused_y: 0.0,
+            bend,
             convex: EdgeUniform::new(c.convex),
             concave: EdgeUniform::new(c.concave),
         }
@@ -110,7 +111,7 @@ pub(crate) struct LinesUniform {
     surface_saturate: f32,
     found_sections: u32,
     normal_creases: u32,
-    unused_y: f32,
+    bend: f32,
     convex: EdgeUniform,
     concave: EdgeUniform,
 }
@@ -132,7 +133,7 @@ mod tests {
                 creases: Some(Creases::default()),
                 ..Outlines::NONE
             };
-            settings.uniform(1.0, [1.0, 0.0]).jump
+            settings.uniform(1.0, [1.0, 0.0], 0.0).jump
         };
         let faithful = |threshold| Silhouettes {
             equations: Equations::Faithful,

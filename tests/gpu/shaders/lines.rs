@@ -14,6 +14,7 @@ pub fn variants() -> Vec<Variant> {
 const KINDS: &str = "
     | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES
     | CREASES OBJECT_EDGES | SILHOUETTES CREASES OBJECT_EDGES
+    | CREASES BENDS | SILHOUETTES CREASES OBJECT_EDGES SECTIONS LEDGES BENDS
     | CREASES LEDGES | SILHOUETTES CREASES OBJECT_EDGES LEDGES
     | CREASES SECTIONS | SILHOUETTES CREASES OBJECT_EDGES SECTIONS
     | SILHOUETTES CREASES OBJECT_EDGES LEDGES SECTIONS
@@ -102,6 +103,7 @@ fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let [marks, jumps] = ["MARKS", "JUMPS"].map(|name| has(&names, name));
     let lines = has_any(&names, &["SILHOUETTES", "CREASES", "OBJECT_EDGES"]);
     names.retain(|name| match *name {
+        "BENDS" => false,
         "BRIDGED" => lines && !marks,
         "JUMPS" => !marks,
         "VISIBLE_RANGE" => jumps && !marks,

@@ -44,9 +44,15 @@ pub const SIDES: [[i64; 2]; 2] = [[1, 0], [0, 1]];
 /// Ink for a response `p`. Softness 1 makes the ramp around `limit` as wide as
 /// fits into [0, 1] symmetrically. It begins at `weakest` at the latest.
 pub fn ink(limit: f32, softness: f32, weakest: f64, p: f64) -> f64 {
+    let [low, high] = ramp(limit, softness, weakest);
+    smoothstep(low, high, p)
+}
+
+/// The responses at which ink begins and is full.
+fn ramp(limit: f32, softness: f32, weakest: f64) -> [f64; 2] {
     let limit = f64::from(limit);
     let half = f64::from(softness).max(1e-3) * limit.min(1.0 - limit);
-    smoothstep((limit - half).min(weakest * limit), limit + half, p)
+    [(limit - half).min(weakest * limit), limit + half]
 }
 
 /// The fraction of the edge limit from which edges continue lines; 1 if none does.
@@ -169,6 +175,35 @@ fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
     facing[2] >= facing[3]
 }
 
+/// How much raw depth bends at the crack between a pixel and its neighbour at a side, as a fraction of
+/// the reference. Where one of both has one neighbour only, at the border of the viewport, it counts
+/// as 0. What is outside of it is as the nearest pixel inside.
+fn bend(view: &View, pixel: [i64; 2], side: usize) -> f64 {
+    let depths = along(view, pixel, SIDES[side], |x, y| view.depth(x, y, 0));
+    let [first, size] = [view.viewport[side], view.viewport[side + 2]].map(i64::from);
+    let bend = |i: usize| {
+        let at = pixel[side] + i as i64 - 2;
+        let inside = at > first && at < first + size - 1;
+        let bend = (depths[i - 1] - 2.0 * depths[i] + depths[i + 1]).abs();
+        if inside { bend } else { 0.0 }
+    };
+    let near = depths[2].max(depths[3]);
+    (bend(2) + bend(3)) / view.jump_reference(near).max(1e-30)
+}
+
+/// The largest bend of a crack, of the next ones on both sides of it, and of those that meet its ends at a
+/// right angle.
+fn bend_around(view: &View, [x, y]: [i64; 2], side: usize) -> f64 {
+    let v = SIDES[side];
+    let ends = [[0, 0], v].map(|[i, j]| [x + i, y + j]);
+    let other = 1 - side;
+    let back = |[x, y]: [i64; 2]| [x - SIDES[other][0], y - SIDES[other][1]];
+    let meeting = (ends.into_iter()).flat_map(|end| [(end, other), (back(end), other)]);
+    let row = [-1, 0, 1].map(|n| ([x + n * v[0], y + n * v[1]], side));
+    let bends = meeting.chain(row).map(|(at, side)| bend(view, at, side));
+    bends.fold(0.0, f64::max)
+}
+
 /// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
 /// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
 /// objects are not part of the reference.
@@ -219,6 +254,14 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         });
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
+        // Whether depth bends as at planes that meet at an angle, of whose half this is the sine.
+        let bends_by = |sine: f64| {
+            let least = view.least_bend * sine / (1.0 - sine * sine).sqrt();
+            by_edges || k.normal_maps || bend_around(view, pixel, side) > least
+        };
+        // The response whose ink is half of a step of eight bits.
+        let [low, high] = ramp(k.edge_limit, k.softness, weakest(s));
+        let folds_by_depth = bends_by(kn * (low + 0.0257 * (high - low)).sqrt().min(0.995));
         let [step, beside, turn] = departures(depths).map(|depth| depth / reference);
         let has_line = silhouettes.is_some_and(|k| {
             let p = step_response(beside, 0.5 * f64::from(k.threshold));
@@ -228,7 +271,8 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let bends = if without {
             turn > 5e-5
         } else {
-            folds[1].unwrap_or(0.0) > (2.0 * 5f64.to_radians().sin()).powi(2)
+            let sine = 5f64.to_radians().sin();
+            folds[1].unwrap_or(0.0) > (2.0 * sine).powi(2) && bends_by(sine)
         };
         let evidence =
             bends || step > 2e-5 || (beside > 2e-5 && beside * reference < jump && !has_line);
@@ -239,8 +283,9 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
             fold_response(folds[1], kn)
         };
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
-        let ridge = is_ridge(folds) && !by_edges || border;
-        let rim = is_rim_ridge(folds) && !by_edges;
+        let by_normals = !by_edges && folds_by_depth;
+        let ridge = is_ridge(folds) && by_normals || border;
+        let rim = is_rim_ridge(folds) && by_normals;
         let drawn = (ridge || rim) && !silent;
         let free = !crack.kinds[0] || border && !crack.certain;
         if border && !silent && crack.kinds[0] {

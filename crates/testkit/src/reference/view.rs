@@ -26,6 +26,9 @@ pub struct View<'a> {
     pub widths: Option<&'a WidthImage>,
     /// Height of an orthographic view in world units.
     pub height: f64,
+    /// The least bend of raw depth over pixels where planes of a right angle meet, as a fraction of
+    /// [`jump_reference`](Self::jump_reference).
+    pub least_bend: f64,
     /// Unit vector towards the light that lines follow.
     pub to_light: [f64; 3],
 }
