@@ -2,7 +2,7 @@
 
 use bevy::{
     camera::Projection,
-    math::{Mat4, UVec2, UVec4, Vec2, Vec3, Vec4},
+    math::{Mat4, UVec4, Vec2, Vec4},
     reflect::Reflect,
     render::render_resource::ShaderType,
 };
@@ -192,41 +192,6 @@ impl DepthProjection {
         }
     }
 
-    /// How much raw depth bends at least where two planes meet, at a crack between two pixels that they
-    /// separate, or at one that meets an end of this crack at a right angle: as a fraction of the reference of
-    /// [`jump_reference`](Self::jump_reference) and of the tangent of half of the angle between the planes.
-    /// The bend at a crack is the sum of the second differences at its two pixels. `size` is that of the view
-    /// in pixels, of `samples` samples each.
-    ///
-    /// Raw depth is affine over a plane on the screen. Let r = (x, y, 1) be the ray through a pixel, and s the
-    /// size of a pixel at distance 1. The slopes of raw depth at two planes that meet there differ by at least
-    /// 2 s tan(angle / 2) / |r|^2 times the reference. The bend at a crack that separates the planes is the
-    /// difference across it, and in one of the two directions that is sqrt(1/2) of it or more. The longest ray
-    /// is at a corner of the view. With several samples, the depth of a pixel is that of the nearest one, and
-    /// the bend may be 0.64 of that.
-    pub fn least_bend(&self, clip_from_view: &Mat4, size: UVec2, samples: u32) -> f32 {
-        let scale = Vec2::new(clip_from_view.x_axis.x, clip_from_view.y_axis.y).abs();
-        let pixel = (2.0 / (scale * size.as_vec2()).max(Vec2::splat(1e-30))).min_element();
-        let view_from_clip = clip_from_view.inverse();
-        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
-        let squared = corners.map(|(x, y)| {
-            let at = |z| view_from_clip.project_point3(Vec3::new(x, y, z));
-            let ray = at(0.5) - at(1.0);
-            ray.length_squared() / (ray.z * ray.z)
-        });
-        let parallel = clip_from_view.transpose().w_axis.truncate() == Vec3::ZERO;
-        let unit = match self.kind {
-            ProjectionKind::Orthographic => pixel / reference_distance(clip_from_view) as f32,
-            // Its raw depth is not affine over planes: every bend counts.
-            ProjectionKind::Oblique if parallel => 0.0,
-            _ => pixel,
-        };
-        let sampled = if samples > 1 { 0.64 } else { 1.0 };
-        let longest = squared.into_iter().fold(1.0, f32::max);
-        let bend = std::f32::consts::SQRT_2 * sampled * unit / longest;
-        if bend.is_finite() { bend } else { 0.0 }
-    }
-
     /// In an orthographic view: the distance from which a perspective view of 45 degrees shows
     /// the same height.
     pub fn reference(&self, clip_from_view: &Mat4) -> Option<f32> {
@@ -332,7 +297,7 @@ impl DepthProjection {
 
 /// The distance from which a perspective view of 45 degrees shows the height of an orthographic
 /// one.
-fn reference_distance(clip_from_view: &Mat4) -> f64 {
+pub(super) fn reference_distance(clip_from_view: &Mat4) -> f64 {
     let height = 2.0 / f64::from(clip_from_view.y_axis.y).abs().max(1e-30);
     height / (2.0 * (std::f64::consts::FRAC_PI_8).tan())
 }
@@ -355,10 +320,7 @@ fn custom_near(clip_from_view: &Mat4) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::{
-        camera::{OrthographicProjection, PerspectiveProjection},
-        math::{DMat4, DVec3, DVec4},
-    };
+    use bevy::camera::{OrthographicProjection, PerspectiveProjection};
 
     fn finite(near: f32, far: f32) -> DepthProjection {
         let projection = Projection::Perspective(PerspectiveProjection {
@@ -438,106 +400,6 @@ mod tests {
                     assert!((got - want).abs() < 1e-9, "{i} to {j}: {got}, {want}");
                 }
             }
-        }
-    }
-
-    /// Two planes that meet between a pixel and the one to the east of it, seen from outside of the
-    /// solid that they bound or from inside: their raw depth, whose second differences are taken.
-    #[test]
-    fn raw_depth_bends_where_two_planes_meet() {
-        let size = UVec2::new(320, 180);
-        let pixel = Vec2::new(2.0, -2.0) / size.as_vec2();
-        let mut state = 7u32;
-        let mut random = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1 << 24)
-        };
-        let parallel = Mat4::orthographic_rh(-8.0, 8.0, -4.5, 4.5, 60.0, 0.0);
-        let mut sheared = Mat4::IDENTITY;
-        sheared.z_axis.x = 0.7;
-        let all = [
-            Mat4::perspective_infinite_reverse_rh(0.6, 16.0 / 9.0, 0.1),
-            Mat4::perspective_infinite_reverse_rh(1.8, 16.0 / 9.0, 0.1),
-            Mat4::perspective_rh(1.0, 16.0 / 9.0, 60.0, 0.1),
-            parallel,
-            parallel * sheared,
-        ];
-        // Those of the samples of a pixel from its centre.
-        let one = vec![[0.0, 0.0]];
-        let four = vec![
-            [-0.125, -0.375],
-            [0.375, -0.125],
-            [-0.375, 0.125],
-            [0.125, 0.375],
-        ];
-        for (matrix, samples) in all.into_iter().flat_map(|m| [(m, &one), (m, &four)]) {
-            let projection = DepthProjection::new(&matrix, None);
-            let [factor, constant] = projection.jump_reference(&matrix).map(f64::from);
-            let least = f64::from(projection.least_bend(&matrix, size, samples.len() as u32));
-            let clip_from_view = matrix.as_dmat4();
-            let view_from_clip = clip_from_view.inverse();
-            let project = |m: DMat4, v: DVec4| (m * v).truncate() / (m * v).w;
-            // A plane's raw depth at a place on the screen, from two of its points on the place's ray.
-            let raw_depth = |normal: DVec3, level: f64, at: [f64; 2]| {
-                let ray = |z| project(view_from_clip, DVec4::new(at[0], at[1], z, 1.0));
-                let (a, b) = (ray(0.9), ray(0.4));
-                let t = (level - normal.dot(a)) / normal.dot(b - a);
-                project(clip_from_view, (a + t * (b - a)).extend(1.0)).z
-            };
-            let (mut lowest, mut count) = (f64::INFINITY, 0);
-            for _ in 0..20_000 {
-                let [x, y] = [size.x, size.y].map(|n| (random() * f64::from(n - 8)).floor() + 4.0);
-                let at = |dx: f64, dy: f64| {
-                    let [x, y] = [x + dx, y + dy].map(|v| v + 0.5);
-                    [x * f64::from(pixel.x) - 1.0, y * f64::from(pixel.y) + 1.0]
-                };
-                let place = at(random(), 0.0);
-                let edge = project(view_from_clip, DVec4::new(place[0], place[1], 0.6, 1.0));
-                let behind = project(view_from_clip, DVec4::new(place[0], place[1], 0.3, 1.0));
-                let away = (behind - edge).normalize();
-                let normals = [0, 1].map(|_| {
-                    let n = DVec3::from([0; 3].map(|_| random() - 0.5)).normalize();
-                    if n.dot(away) < 0.0 { n } else { -n }
-                });
-                if normals.iter().any(|n| n.dot(away) > -0.1) {
-                    continue;
-                }
-                let half = 0.5 * normals[0].angle_between(normals[1]);
-                let outside = random() < 0.5;
-                let both = |dx, dy| normals.map(|n| raw_depth(n, n.dot(edge), at(dx, dy)));
-                let depth = |dx: f64, dy: f64| {
-                    let depths = samples.iter().map(|[x, y]| {
-                        let [a, b] = both(dx + x, dy + y);
-                        if outside { a.min(b) } else { a.max(b) }
-                    });
-                    depths.fold(f64::NEG_INFINITY, f64::max)
-                };
-                // The planes meet at the place, but may have one side on both pixels. Normals are
-                // those of the first samples.
-                let sides = [0.0, 1.0].map(|dx| {
-                    let [a, b] = both(dx + samples[0][0], samples[0][1]);
-                    a > b
-                });
-                if sides[0] == sides[1] {
-                    continue;
-                }
-                // At a crack: to the east, and to the south.
-                let bend = |[dx, dy]: [f64; 2], [vx, vy]: [f64; 2]| {
-                    let along = [-1.0, 0.0, 1.0, 2.0].map(|n| depth(dx + n * vx, dy + n * vy));
-                    let [a, b, c, d] = along;
-                    let reference = factor * b.max(c) + constant;
-                    ((a - 2.0 * b + c).abs() + (b - 2.0 * c + d).abs()) / reference
-                };
-                let ends = [[0.0, -1.0], [0.0, 0.0], [1.0, -1.0], [1.0, 0.0]];
-                let beside = ends.map(|at| bend(at, [0.0, 1.0]));
-                let largest = beside
-                    .into_iter()
-                    .fold(bend([0.0; 2], [1.0, 0.0]), f64::max);
-                lowest = lowest.min(largest / (least * half.tan()));
-                count += 1;
-            }
-            let what = format!("{matrix}, {} samples: {lowest}, {count}", samples.len());
-            assert!((0.99..2.5).contains(&lowest) && count > 1_000, "{what}");
         }
     }
 

@@ -2,6 +2,7 @@
 //! effects read distance from.
 
 mod axis;
+mod bends;
 mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;

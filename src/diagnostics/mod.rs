@@ -32,12 +32,10 @@ pub enum ComicsStage {
     /// The reduction that finds the nearest and farthest visible depth.
     DepthRange,
     /// The smoothing or locking of that range over time
-    /// ([`RangeSmoothing`](crate::depth::RangeSmoothing),
-    /// [`DepthMap::locked`](crate::DepthMap::locked)).
+    /// (`RangeSmoothing`, [`DepthMap::locked`](crate::DepthMap::locked)).
     RangeSmoothing,
     /// The copy of the range, or of the histogram, to the game
-    /// ([`VisibleDepthRange`](crate::depth::VisibleDepthRange),
-    /// [`DepthHistogram`](crate::depth::DepthHistogram)).
+    /// (`VisibleDepthRange`, `DepthHistogram`).
     RangeReadback,
     /// The pass that picks one sample of every pixel of a multisampled view, for the
     /// lines.
@@ -103,7 +101,7 @@ pub enum StageOutcome {
     /// It ran.
     Ran,
     /// It ran with this method: a
-    /// [`ReductionMethod::name`](crate::depth::ReductionMethod::name), or `tolerant depth` for
+    /// `ReductionMethod::name`, or `tolerant depth` for
     /// [`ObjectIds`](ComicsStage::ObjectIds) that are not drawn at equal depth
     /// (`ObjectIdDepthTest`).
     RanWith(&'static str),

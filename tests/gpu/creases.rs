@@ -30,6 +30,21 @@ fn creases(weight: LineWeight) -> ComicStyle {
     })
 }
 
+/// The same lines, with or without those of normal maps.
+fn bumpy_creases(normal_maps: bool) -> ComicStyle {
+    let creases = Creases {
+        normal_maps,
+        ..default()
+    };
+    ComicStyle::new().with(Outlines {
+        silhouettes: None,
+        objects: None,
+        creases: Some(creases),
+        width: WIDTH,
+        ..default()
+    })
+}
+
 /// The place of the cube of which the edge leans by an angle and passes the middle of the picture
 /// at a distance in pixels.
 fn leaning(lean: f32, shift: f32) -> Transform {
@@ -166,17 +181,7 @@ fn bumps_of_normal_maps_have_no_creases() {
     let cube = small.put(cube.expect("it has uvs"), bumpy, leaning(0.3, 0.0));
     small.world().entity_mut(cube).insert(MeshSections::NONE);
     let mut bumps = |normal_maps| {
-        let creases = Creases {
-            normal_maps,
-            ..default()
-        };
-        small.style(&ComicStyle::new().with(Outlines {
-            silhouettes: None,
-            objects: None,
-            creases: Some(creases),
-            width: WIDTH,
-            ..default()
-        }));
+        small.style(&bumpy_creases(normal_maps));
         small.settle();
         let picture = small.picture();
         for y in 12..52 {
@@ -230,16 +235,7 @@ fn smooth_bevels_keep_their_creases() {
         let bevel = small.put(bevel(width), unlit(Color::WHITE), at);
         small.world().entity_mut(bevel).insert(MeshSections::NONE);
         let mut ink = |normal_maps| {
-            let creases = Creases {
-                normal_maps,
-                ..default()
-            };
-            small.style(&ComicStyle::new().with(Outlines {
-                silhouettes: None,
-                objects: None,
-                creases: Some(creases),
-                ..default()
-            }));
+            small.style(&bumpy_creases(normal_maps));
             small.settle();
             [0.0, 0.2, 0.4, 0.6, 0.8].map(|shift| {
                 let at = Transform::from_xyz(shift, 0.0, -400.0);
