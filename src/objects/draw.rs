@@ -51,7 +51,7 @@ pub(super) fn draw_object_ids(
 ) {
     let entity = view.entity();
     let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
-    let phase = phases.0.get(&extracted.retained_view_entity);
+    let phase = phases.views.get(&extracted.retained_view_entity);
     let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
     let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
         let phase = phase.ok_or(SkipReason::PipelineNotReady)?;

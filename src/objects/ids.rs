@@ -14,7 +14,7 @@ use bevy::{
     },
     mesh::Mesh3d,
     pbr::MeshPipelineKey,
-    platform::collections::HashSet,
+    platform::{collections::HashSet, time::Instant},
     render::{
         camera::DirtySpecializations,
         render_resource::TextureUsages,
@@ -120,11 +120,12 @@ pub(super) fn queue_object_ids(
     changes: Changes,
     mut phases: ResMut<ObjectIdPhases>,
 ) {
+    let started = Instant::now();
     with_widths.clear();
     for view in &stale {
         commands.entity(view).remove::<QueuedDepth>();
     }
-    for phase in phases.0.values_mut() {
+    for phase in phases.views.values_mut() {
         phase.live = false;
     }
     for (entity, view, visible, (fading, ids, (wanted, queued), msaa)) in &views {
@@ -133,7 +134,7 @@ pub(super) fn queue_object_ids(
         let asked = ids.0.copied().unwrap_or_default();
         let layer = asked.layer || ids.2;
         let ids = (asked.ids, ids.1.is_some());
-        let phase = phases.0.entry(view.retained_view_entity).or_default();
+        let phase = phases.views.entry(view.retained_view_entity).or_default();
         phase.live = true;
         let Some(class) = visible.get::<Mesh3d>() else {
             phase.clear(&mut records.ids);
@@ -182,12 +183,13 @@ pub(super) fn queue_object_ids(
             _ => {}
         }
     }
-    phases.0.retain(|_, phase| {
+    phases.views.retain(|_, phase| {
         if !phase.live {
             phase.clear(&mut records.ids);
         }
         phase.live
     });
+    phases.elapsed = started.elapsed();
 }
 
 /// Makes the instances of a view.

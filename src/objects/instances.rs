@@ -9,6 +9,7 @@ use std::{any::TypeId, num::NonZero};
 
 use bevy::{
     ecs::system::{Res, ResMut, StaticSystemParam, SystemParam, SystemParamItem},
+    platform::time::Instant,
     pbr::{MeshInputUniform, MeshPipeline, MeshUniform, PreprocessPipelines, RenderMeshInstances},
     render::{
         batching::{
@@ -48,12 +49,23 @@ pub(super) fn place_instances(
     param: StaticSystemParam<<MeshPipeline as GetBatchData>::Param>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
+    let started = Instant::now();
+    place(&mut phases, &mut engine, &param, (&device, &queue));
+    phases.elapsed += started.elapsed();
+}
+
+fn place(
+    phases: &mut ObjectIdPhases,
+    engine: &mut EngineBuffers,
+    param: &SystemParamItem<<MeshPipeline as GetBatchData>::Param>,
+    (device, queue): (&RenderDevice, &RenderQueue),
+) {
     let key = TypeId::of::<ObjectIdItem>();
     if let RenderMeshInstances::CpuBuilding(_) = *engine.instances {
         if let Some(buffer) = &mut engine.cpu {
-            for phase in phases.0.values_mut() {
-                phase.build_on_cpu(buffer, &param);
-                phase.upload(&device, &queue);
+            for phase in phases.views.values_mut() {
+                phase.build_on_cpu(buffer, param);
+                phase.upload(device, queue);
             }
         }
         return;
@@ -62,10 +74,10 @@ pub(super) fn place_instances(
         return;
     };
     let mut most = 0;
-    for phase in phases.0.values_mut() {
+    for phase in phases.views.values_mut() {
         if std::mem::take(&mut phase.changed) {
             phase.build();
-            phase.upload(&device, &queue);
+            phase.upload(device, queue);
         }
         most = most.max(phase.buffers.work.len());
     }
@@ -200,7 +212,8 @@ pub(super) fn bind_instances(
     shared: Res<ObjectIdPipeline>,
     binder: Binder,
 ) {
-    for phase in phases.0.values_mut() {
+    let started = Instant::now();
+    for phase in phases.views.values_mut() {
         phase.buffers.expansion = expanding.expansion(&phase.buffers, &binder);
         phase.buffers.bound = phase.bound(&sections).map(|[objects, sections]| {
             let entries = [
@@ -210,6 +223,7 @@ pub(super) fn bind_instances(
             binder.group("comics_objects", &shared.layout, &entries)
         });
     }
+    phases.elapsed += started.elapsed();
 }
 
 /// Expands the instances of a view.
@@ -221,7 +235,7 @@ pub(super) fn expand_instances(
     mut ctx: RenderContext,
 ) {
     let (view, offset) = view.into_inner();
-    let Some(phase) = phases.0.get(&view.retained_view_entity) else {
+    let Some(phase) = phases.views.get(&view.retained_view_entity) else {
         return;
     };
     let pipeline = pipelines

@@ -171,7 +171,7 @@ impl Drawing<'_> {
         pressure: Option<BindingResource>,
         depth: Option<&TextureView>,
     ) -> Option<BindGroup> {
-        let [objects, sections] = self.phases.0.get(&view)?.bound(&self.sections)?;
+        let [objects, sections] = self.phases.views.get(&view)?.bound(&self.sections)?;
         let mut entries = vec![
             gpu::entry(0, objects.as_entire_binding()),
             gpu::entry(1, sections.as_entire_binding()),

@@ -2,7 +2,7 @@
 //! instances of one draw call. Bins are kept from frame to frame, so a frame without changes does
 //! nothing for each mesh.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, ops::Range, time::Duration};
 
 use bevy::{
     asset::AssetId,
@@ -297,12 +297,16 @@ impl ObjectIdPhase {
 
 /// The bins of all views.
 #[derive(Resource, Default)]
-pub(crate) struct ObjectIdPhases(pub HashMap<RetainedViewEntity, ObjectIdPhase>);
+pub(crate) struct ObjectIdPhases {
+    pub views: HashMap<RetainedViewEntity, ObjectIdPhase>,
+    /// How long the CPU took this frame to queue, batch and bind them.
+    pub elapsed: Duration,
+}
 
 impl ObjectIdPhases {
     /// What the passes of a view bind.
     pub fn bind_group(&self, view: RetainedViewEntity) -> Option<&BindGroup> {
-        self.0.get(&view)?.bind_group()
+        self.views.get(&view)?.bind_group()
     }
 }
 

@@ -1,5 +1,7 @@
 //! What tests and benchmarks read of the work that objects cause.
 
+use std::time::Duration;
+
 use bevy::ecs::world::World;
 
 use crate::bind_groups::BindGroups;
@@ -22,10 +24,16 @@ pub struct ObjectWork {
 }
 
 impl ObjectWork {
+    /// How long the CPU took in the last frame to queue, batch and bind object ids.
+    pub fn elapsed(render_world: &World) -> Duration {
+        let phases = render_world.get_resource::<ObjectIdPhases>();
+        phases.map_or(Duration::ZERO, |phases| phases.elapsed)
+    }
+
     /// Reads it from the render world.
     pub fn of(render_world: &World) -> Self {
         let phases = render_world.get_resource::<ObjectIdPhases>();
-        let phases = phases.into_iter().flat_map(|phases| phases.0.values());
+        let phases = phases.into_iter().flat_map(|phases| phases.views.values());
         let sections = render_world.get_resource::<SectionBuffer>();
         let boxes = render_world.get_resource::<ObjectBounds>();
         let sections = sections.map_or(0, |sections| sections.words.written);

@@ -191,20 +191,34 @@ fn put_wires(small: &mut Small) {
 /// Every pixel, with gaps in rows, columns, and at the borders of cells and words.
 #[test]
 fn closed_gaps_match_the_reference() {
+    assert_closed_gaps([CLOSED[0], CLOSED[2]]);
+}
+
+#[test]
+#[ignore = "long: thin lines too; quick test bridge::closed_gaps_match_the_reference"]
+fn closed_gaps_of_thin_lines_match_the_reference() {
+    assert_closed_gaps(CLOSED);
+}
+
+/// Lengths of gaps, widths, weights, and continuity.
+const CLOSED: [(u32, f32, LineWeight, f32); 3] = [
+    (3, 2.0, LineWeight::EVEN, 8.0),
+    (2, 1.0, LineWeight::EVEN, 0.0),
+    (1, 5.0, UNEVEN, 12.0),
+];
+
+const UNEVEN: LineWeight = LineWeight {
+    outer: 1.4,
+    inner: 0.6,
+    taper: 9.0,
+    perspective: 0.5,
+    ..LineWeight::EVEN
+};
+
+fn assert_closed_gaps(cases: impl IntoIterator<Item = (u32, f32, LineWeight, f32)>) {
     let mut small = Small::new(UVec2::new(101, 70), Msaa::Off);
     put_wires(&mut small);
-    let weight = LineWeight {
-        outer: 1.4,
-        inner: 0.6,
-        taper: 9.0,
-        perspective: 0.5,
-        ..LineWeight::EVEN
-    };
-    for (gap_closing, width, weight, hysteresis) in [
-        (3, 2.0, LineWeight::EVEN, 8.0),
-        (2, 1.0, LineWeight::EVEN, 0.0),
-        (1, 5.0, weight, 12.0),
-    ] {
+    for (gap_closing, width, weight, hysteresis) in cases {
         let outlines = Outlines {
             gap_closing,
             width,

@@ -13,48 +13,61 @@ use crate::prelude::*;
 /// No multiple of the widths and heights of blocks, cells and tiles.
 const SIZE: UVec2 = UVec2::new(157, 91);
 
-/// An app in which an error of the renderer is a panic.
-fn with_limits(size: UVec2, limits: Option<wgpu::Limits>) -> Studio {
+/// The small scene, with round things and another box.
+fn scene(size: UVec2, limits: Option<wgpu::Limits>) -> Small {
     let options = HeadlessOptions {
         size,
         limits,
         ..default()
     };
-    let mut studio = Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin);
-    let fails = RenderErrorHandler(|error, _, _| panic!("{}", error.description));
-    studio.headless.app.insert_resource(fails);
-    studio
+    let mut small = Small::with(options, Msaa::Off);
+    let blue = || unlit(Color::srgb(0.3, 0.4, 0.8));
+    let ball = Sphere::new(0.6).mesh().uv(32, 18);
+    small.put(ball, blue(), Transform::from_xyz(0.3, 0.9, 2.2));
+    let turned = Quat::from_euler(EulerRot::YXZ, 0.4, 0.9, 0.0);
+    let ring = Transform::from_xyz(-1.2, 1.8, 0.4).with_rotation(turned);
+    small.put(Torus::new(0.3, 0.8), blue(), ring);
+    let aside = Transform::from_xyz(1.9, 1.6, 0.6).with_rotation(turned);
+    small.put(Cuboid::from_length(1.2), blue(), aside);
+    small
 }
 
-fn studio(by_fragments: bool) -> Studio {
-    let limits = by_fragments.then(|| wgpu::Limits {
+fn limited() -> Small {
+    let limits = wgpu::Limits {
         max_storage_textures_per_shader_stage: 0,
         ..gpu().device.limits()
-    });
-    with_limits(SIZE, limits)
+    };
+    scene(SIZE, Some(limits))
+}
+
+fn shoot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
+    small.style(style);
+    small.settle().picture()
 }
 
 /// Whether the lines of the last picture were drawn without compute shaders.
-fn is_by_fragments(studio: &Studio) -> bool {
-    let world = studio.headless.app.world();
+fn is_by_fragments(small: &Small) -> bool {
+    let world = small.headless.app.world();
     let diagnostics = world.resource::<ComicsDiagnostics>();
-    diagnostics.cameras[&studio.camera].outcome(ComicsStage::SearchTiles)
+    diagnostics.cameras[&small.camera].outcome(ComicsStage::SearchTiles)
         == Some(StageOutcome::Skipped(SkipReason::NoComputeShaders))
 }
 
 /// Fails unless the app without compute passes draws the same lines as the other one, and these
 /// any.
-fn assert_same(with: &mut Studio, without: &mut Studio, plain: &RgbaImage, named: &Named) {
+fn assert_same(with: &mut Small, without: &mut Small, plain: &RgbaImage, named: &Named) {
     let (name, style) = named;
-    let [wanted, found] = [&mut *with, &mut *without].map(|studio| studio.shoot(Some(style)));
+    let [wanted, found] = [&mut *with, &mut *without].map(|small| shoot(small, style));
     assert!(is_by_fragments(without) && !is_by_fragments(with), "{name}");
     let far = (wanted.as_raw().iter().zip(found.as_raw()))
         .filter(|(a, b)| a.abs_diff(**b) > 1)
         .count();
     let inked = (plain.as_raw().iter().zip(wanted.as_raw())).filter(|(a, b)| a != b);
-    assert!(inked.count() > 500, "{name} draws nothing");
+    let inked = inked.count();
+    assert!(inked > 500, "{name} draws {inked} values");
     // Lines blended over the picture may round differently.
     assert_eq!(far, 0, "{name}: {far} values differ");
+    assert_eq!(with.errors() + without.errors(), 0, "{name}");
 }
 
 /// A style and its name.
@@ -67,11 +80,9 @@ fn outlines(width: f32) -> ComicStyle {
     })
 }
 
-fn check(styles: &[Named]) -> Studio {
-    let [mut with, mut without] = [false, true].map(studio);
-    // Both: sketches change with the clock.
-    let plain = with.shoot(None);
-    without.shoot(None);
+fn check(styles: &[Named]) -> Small {
+    let (mut with, mut without) = (scene(SIZE, None), limited());
+    let plain = shoot(&mut with, &ComicStyle::new());
     for named in styles {
         assert_same(&mut with, &mut without, &plain, named);
     }
@@ -80,14 +91,19 @@ fn check(styles: &[Named]) -> Studio {
 
 #[test]
 fn lines_without_compute_passes_are_the_same() {
+    let still = Sketch {
+        rate: 0.0,
+        ..default()
+    };
     check(&[
         ("outlines", outlines(2.0)),
         ("wider outlines", outlines(16.0)),
-        ("sketch", outlines(1.5).with(Sketch::default())),
+        ("sketch", outlines(1.5).with(still)),
         ("contours", ComicStyle::new().with(Contours::default())),
     ]);
 }
 
+/// Lines are also as if they had no weight, however small it is.
 #[test]
 fn parts_of_lines_without_compute_passes_are_the_same() {
     let creases = Outlines {
@@ -114,8 +130,26 @@ fn parts_of_lines_without_compute_passes_are_the_same() {
         ("object edges alone", ComicStyle::new().with(object_edges)),
     ]);
     let pictures =
-        [creases, signs].map(|lines| without.shoot(Some(&ComicStyle::new().with(lines))));
+        [creases, signs].map(|lines| shoot(&mut without, &ComicStyle::new().with(lines)));
     assert!(pictures[0] == pictures[1]);
+    let even = Outlines {
+        width: 8.0,
+        ..along_cracks()
+    };
+    let wanted = shoot(&mut without, &ComicStyle::new().with(even));
+    for factor in [0.0, 0.25, 2.0] {
+        let weight = LineWeight {
+            outer: factor,
+            inner: factor,
+            crease: factor,
+            object: factor,
+            taper: 12.0,
+            ..LineWeight::EVEN
+        };
+        let style = ComicStyle::new().with(Outlines { weight, ..even });
+        assert!(shoot(&mut without, &style) == wanted, "{factor}");
+    }
+    assert_eq!(without.errors(), 0);
 }
 
 /// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by
@@ -129,39 +163,15 @@ fn lines_of_a_view_larger_than_a_buffer_are_the_same() {
         max_storage_buffer_binding_size: most,
         ..gpu().device.limits()
     };
-    let mut without = with_limits(SIZE, Some(limits));
-    without.shoot(Some(&outlines(2.0)));
+    let mut without = scene(SIZE, Some(limits));
+    shoot(&mut without, &outlines(2.0));
     assert!(!is_by_fragments(&without), "the small view is not searched");
     without.headless.resize(large, 1.0);
     let target = without.headless.render_target();
-    let world = without.headless.app.world_mut();
-    world.entity_mut(without.camera).insert(target);
-    let mut with = with_limits(large, None);
-    let plain = with.shoot(None);
+    without.insert(target);
+    let mut with = scene(large, None);
+    let plain = shoot(&mut with, &ComicStyle::new());
     for (name, width) in [("2 px", 2.0), ("16 px", 16.0)] {
         assert_same(&mut with, &mut without, &plain, &(name, outlines(width)));
-    }
-}
-
-/// Without compute passes, lines are as if they had no weight, however small it is.
-#[test]
-fn lines_without_compute_passes_have_no_weight() {
-    let mut without = studio(true);
-    let even = Outlines {
-        width: 8.0,
-        ..along_cracks()
-    };
-    let wanted = without.shoot(Some(&ComicStyle::new().with(even)));
-    for factor in [0.0, 0.25, 2.0] {
-        let weight = LineWeight {
-            outer: factor,
-            inner: factor,
-            crease: factor,
-            object: factor,
-            taper: 12.0,
-            ..LineWeight::EVEN
-        };
-        let style = ComicStyle::new().with(Outlines { weight, ..even });
-        assert!(without.shoot(Some(&style)) == wanted, "{factor}");
     }
 }

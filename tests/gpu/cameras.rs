@@ -104,7 +104,7 @@ fn a_second_camera_changes_only_what_it_draws() {
         (Msaa::Sample4, false),
         (Msaa::Off, true),
     ] {
-        let mut small = Small::new(UVec2::new(192, 128), msaa);
+        let mut small = Small::new(size(), msaa);
         if hdr {
             small.insert(Hdr);
         }
@@ -112,11 +112,14 @@ fn a_second_camera_changes_only_what_it_draws() {
         small.settle();
         let alone = small.picture();
         cube(&mut small, Color::srgb(0.2, 0.7, 0.3));
-        for (settings, masks) in [
+        let cases = [
             (overlay_camera(1), true),
             (over_the_first(), true),
             (over_the_first(), false),
-        ] {
+        ];
+        // One control without a mask is enough.
+        let is_plain = msaa == Msaa::Off && !hdr;
+        for (settings, masks) in cases.into_iter().take(if is_plain { 3 } else { 2 }) {
             let mut drawn = |style: &ComicStyle, mask: StyleMask| {
                 let camera = second(&mut small, (settings.clone(), mask), style);
                 small.settle();
@@ -125,7 +128,7 @@ fn a_second_camera_changes_only_what_it_draws() {
                 picture
             };
             let shape = different(&drawn(&ComicStyle::new(), StyleMask::Auto), &alone);
-            assert!((1000..6000).contains(&shape.len()), "{}", shape.len());
+            assert!((250..1500).contains(&shape.len()), "{}", shape.len());
             let mask = if masks {
                 StyleMask::Auto
             } else {
@@ -145,7 +148,7 @@ fn a_second_camera_changes_only_what_it_draws() {
             );
             if !masks {
                 // Without a mask, nearly all is changed once more.
-                assert!(strayed > 10_000, "{strayed}");
+                assert!(strayed > 2500, "{strayed}");
             }
         }
         assert_eq!(small.errors(), 0);
@@ -299,9 +302,10 @@ fn with_bare_cube(
 /// and `Plain` changes nothing.
 #[test]
 fn what_is_not_in_the_prepass_keeps_its_colours() {
+    let plugin = MaterialPlugin::<Bare>::default();
+    let mut small = Small::with_plugins(options(size()), Msaa::Off, plugin);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let plugin = MaterialPlugin::<Bare>::default();
-        let mut small = Small::with_plugins(options(UVec2::new(192, 128)), msaa, plugin);
+        small.restart(msaa);
         let empty = ComicStyle::new();
         let before = with_bare_cube(&mut small, BeyondPrepass::Styled, &empty);
         let material = small.world().resource_mut::<Assets<Bare>>().add(Bare {});
@@ -309,7 +313,7 @@ fn what_is_not_in_the_prepass_keeps_its_colours() {
         small.put_shared(Cuboid::default(), MeshMaterial3d(material), at);
         let plain = with_bare_cube(&mut small, BeyondPrepass::Styled, &empty);
         let shape = different(&plain, &before);
-        assert!((1000..6000).contains(&shape.len()), "{}", shape.len());
+        assert!((250..1500).contains(&shape.len()), "{}", shape.len());
         // Not the rim, whose pixels show both.
         let is_whole = |(x, y): (u32, u32)| {
             let near = |at: u32| at - 1..=at + 1;
@@ -322,13 +326,13 @@ fn what_is_not_in_the_prepass_keeps_its_colours() {
             let changed = different(&drawn, &plain);
             whole.iter().filter(|at| changed.contains(**at)).count()
         };
-        assert!(changed(BeyondPrepass::Styled, &lines) > 100, "{msaa:?}");
+        assert!(changed(BeyondPrepass::Styled, &lines) > 25, "{msaa:?}");
         assert_eq!(changed(BeyondPrepass::NoLines, &lines), 0, "{msaa:?}");
         assert!(changed(BeyondPrepass::NoLines, &comic()) > whole.len() / 2);
         assert_eq!(changed(BeyondPrepass::Plain, &comic()), 0, "{msaa:?}");
         // Elsewhere there are lines.
         let drawn = with_bare_cube(&mut small, BeyondPrepass::NoLines, &lines);
-        assert!(different(&drawn, &plain).len() > 500);
+        assert!(different(&drawn, &plain).len() > 125);
         // Both masks in one shader.
         small.insert(StyleMask::Own).settle();
         assert!(small.ran(ComicsStage::Stylize));

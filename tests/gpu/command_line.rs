@@ -150,10 +150,13 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
+/// Contours read the depth range, and outlines the ids.
 #[test]
-fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
+fn a_dump_holds_depth_and_ids_without_loss_and_says_what_was_decided() {
     let folder = folder("dump");
-    let style = "teapot --style crimson-dusk --hdr";
+    let both = r#"(version: 3, name: "Both lines", contours: (), outlines: ())"#;
+    fs::write(folder.join("both.comic.ron"), both).expect("written");
+    let style = "theatre --style both.comic.ron --hdr";
     let rest = "--size 64x48 --msaa 1 --frames 4 --out p.png --dump d";
     render(&folder, &format!("{style} {rest}"));
     let size = image::image_dimensions(folder.join("p.png"));
@@ -161,9 +164,13 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
 
     let frame = frame(&folder);
     assert_eq!(frame["projection"], "perspective");
-    assert_eq!(frame["style"]["name"], "Crimson dusk");
+    assert_eq!(frame["style"]["name"], "Both lines");
+    assert_eq!(frame["material"], "toon");
+    for kind in ["directional", "point", "spot"] {
+        assert_eq!(frame["lights"][kind], 1, "{kind}");
+    }
     let ran = frame["passes_run"].as_array().expect("a list");
-    for pass in ["stylize", "contours"] {
+    for pass in ["stylize", "contours", "outlines"] {
         assert!(ran.iter().any(|name| name == pass), "{pass}: {ran:?}");
     }
     assert_eq!(frame["passes_left_out"]["desaturation"], "not requested");
@@ -187,20 +194,7 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
         values.collect::<Vec<f32>>()
     });
     assert_ne!(before, after);
-    assert!(!folder.join("d/ids.exr").exists(), "no line wants ids");
-    fs::remove_dir_all(folder).expect("the folder goes");
-}
 
-#[test]
-fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
-    let folder = folder("dump-ids");
-    let arguments = "theatre --size 64x48 --msaa 1 --frames 1 --out p.png --dump d";
-    render(&folder, arguments);
-    let frame = frame(&folder);
-    assert_eq!(frame["material"], "toon");
-    for kind in ["directional", "point", "spot"] {
-        assert_eq!(frame["lights"][kind], 1, "{kind}");
-    }
     let (name, FlatSamples::U32(ids)) = dumped(&folder, "ids.exr") else {
         panic!("ids are not whole numbers")
     };

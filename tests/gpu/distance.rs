@@ -39,7 +39,7 @@ fn are_equal(a: &image::RgbaImage, b: &image::RgbaImage) -> bool {
 #[test]
 fn a_sky_dome_is_sky() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(192, 128), msaa);
+        let mut small = Small::new(size(), msaa);
         small.insert(VisibleDepthRange::default());
         // Smoothed, it would take some seconds until the range has come back.
         let map = DepthMap {
@@ -68,9 +68,11 @@ fn a_sky_dome_is_sky() {
         for sky in [dome, cloud] {
             small.world().entity_mut(sky).remove::<Backdrop>();
         }
-        small.settle();
-        small.settle();
-        assert_ne!(small.range(), range, "{msaa:?}");
+        if msaa == Msaa::Off {
+            small.settle();
+            small.settle();
+            assert_ne!(small.range(), range, "it counts again");
+        }
         small.insert(DepthMap {
             sky_beyond: Some(100.0),
             ..map

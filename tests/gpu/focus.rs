@@ -319,7 +319,7 @@ fn the_focus_of_the_middle_is_steady() {
         "{:?}",
         first.get_pixel(36, 24)
     );
-    small.headless.step(120);
+    small.wait(2.0);
     let last = small.picture();
     assert!(first != last);
     small.restart(Msaa::Off);

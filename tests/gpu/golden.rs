@@ -121,21 +121,25 @@ fn the_village_looks_as_it_did() {
 }
 
 #[test]
+#[ignore = "long: a scene of its own; quick test golden::the_teapot_looks_as_it_did"]
 fn the_theatre_looks_as_it_did() {
     check(BuiltIn::Theatre, 1);
 }
 
 #[test]
+#[ignore = "long: a scene of its own; quick test golden::the_teapot_looks_as_it_did"]
 fn the_figure_looks_as_it_did() {
     check(BuiltIn::Figure, 1);
 }
 
 #[test]
+#[ignore = "long: a scene of its own; quick test golden::the_teapot_looks_as_it_did"]
 fn the_street_looks_as_it_did() {
     check(BuiltIn::Street, 1);
 }
 
 #[test]
+#[ignore = "long: a scene of its own; quick test golden::the_teapot_looks_as_it_did"]
 fn the_hall_looks_as_it_did() {
     check(BuiltIn::Hall, 1);
 }
@@ -150,6 +154,7 @@ fn every_scene_looks_as_it_did_in_every_style() {
 
 /// Strokes on materials, not in a style.
 #[test]
+#[ignore = "long: a large scene; quick test golden::the_teapot_looks_as_it_did"]
 fn the_hatched_theatre_looks_as_it_did() {
     let references = references(BuiltIn::Theatre, "hatched-material");
     let failed = failure(&references, &hatched_theatre(), MOST_FAR_OFF_ON_OTHERS);

@@ -1,6 +1,8 @@
 //! Impact frames: what they show, for how long, and how often.
 
+use bevy::time::TimeUpdateStrategy;
 use bevy_comics::{Impact, ReduceFlashing, diagnostics::ImpactCounts};
+use bevy_comics_testkit::headless::FRAME;
 use image::RgbaImage;
 
 use crate::{line_scenes::runs, prelude::*};
@@ -107,7 +109,7 @@ fn lines_are_exchanged_with_the_tones() {
     trigger(&mut small, |impact| impact.tones.threshold = 0.0);
     small.headless.step(1);
     let plain = small.picture();
-    small.headless.step(60);
+    small.wait(1.0);
     trigger(&mut small, |impact| {
         impact.tones.threshold = 0.0;
         impact.tones.invert = true;
@@ -132,26 +134,32 @@ fn a_fourth_flash_in_a_second_is_refused() {
     let mut small = small();
     let before = small.picture();
     let mut begins = Vec::new();
-    for frame in 0..180usize {
+    // 30 frames are a second, and two frames a drawing.
+    let frame_time = TimeUpdateStrategy::ManualDuration(2 * FRAME);
+    small.world().insert_resource(frame_time);
+    for frame in 0..90usize {
         let shown = counts(&small);
-        if frame % 6 == 0 {
-            trigger(&mut small, |impact| impact.drawings = 1);
+        if frame % 3 == 0 {
+            trigger(&mut small, |impact| {
+                impact.drawings = 1;
+                impact.rate = 24.0;
+            });
         }
         small.headless.step(1);
         if counts(&small).map(|c| c.shown) != shown.map(|c| c.shown) {
             begins.push(frame);
             assert!(is_two_tone(&small.picture()), "frame {frame}");
-        } else if begins.last().is_none_or(|begin| frame - begin >= 5) {
+        } else if begins.last().is_none_or(|begin| frame - begin >= 2) {
             assert_eq!(small.picture(), before, "frame {frame}");
         }
     }
-    for begin in 0..120 {
-        let second = begin..begin + 60;
+    for begin in 0..60 {
+        let second = begin..begin + 30;
         let within = begins.iter().filter(|f| second.contains(*f)).count();
         assert!(within <= Impact::MOST_FLASHES, "{begin}: {begins:?}");
     }
     // A flash counts from the frame after its trigger, which is later than that of the test.
-    assert_eq!(begins[..4], [0, 6, 12, 66], "{begins:?}");
+    assert_eq!(begins[..4], [0, 3, 6, 33], "{begins:?}");
     assert_eq!(begins.len(), 9);
     assert_eq!(counts(&small), counted(9, 21));
 }
@@ -209,7 +217,7 @@ fn reduced_flashing_dims() {
     let film = small.film(14);
     assert_eq!(runs(&film), [9, 5]);
     // Lines stand still.
-    small.headless.step(60);
+    small.wait(1.0);
     trigger(&mut small, |_| {});
     let film = small.film(15);
     assert_eq!(runs(&film), [10, 5]);
@@ -243,7 +251,8 @@ fn extreme_impacts_end() {
             impact.rate = rate;
             impact.tones.threshold = f32::NAN;
         });
-        small.headless.step(60);
+        // Three drawings at the lowest rate are 0.75 s.
+        small.wait(1.0);
         assert_eq!(small.picture(), before, "{rate}");
     }
     let nobody = small.world().spawn_empty().id();

@@ -109,21 +109,37 @@ fn widths(small: &mut Small, width: f32, paper: Paper) -> Vec<f64> {
 /// independent. Lines that are thin for the spread are nowhere without ink.
 #[test]
 fn lines_keep_their_mean_width_on_paper() {
-    let mut small = strips();
-    for width in [0.5f32, 1.0, 2.0, 3.5, 6.0] {
-        let smooth = widths(&mut small, width, plain(0.0, 0.0));
-        assert!((mean(&smooth) - f64::from(width)).abs() < 0.05);
-        assert!(deviation(&smooth) < 0.01);
-    }
-    for (width, spread) in [
-        (0.5f32, 2.0f32),
+    lines_keep_their_mean_width(
+        &[1.0, 6.0],
+        &[(0.5, 2.0), (1.0, 0.6), (2.0, 1.0), (6.0, 2.0)],
+    );
+}
+
+#[test]
+#[ignore = "long: more widths and spreads"]
+fn lines_keep_their_mean_width_on_paper_at_every_spread() {
+    let smooth = [0.5, 1.0, 2.0, 3.5, 6.0];
+    let rough = [
+        (0.5, 2.0),
         (1.0, 0.6),
         (1.0, 2.0),
         (2.0, 1.0),
         (3.5, 2.0),
         (6.0, 1.0),
         (6.0, 2.0),
-    ] {
+    ];
+    lines_keep_their_mean_width(&smooth, &rough);
+}
+
+/// `rough`: widths and spreads.
+fn lines_keep_their_mean_width(smooth: &[f32], rough: &[(f32, f32)]) {
+    let mut small = strips();
+    for &width in smooth {
+        let smooth = widths(&mut small, width, plain(0.0, 0.0));
+        assert!((mean(&smooth) - f64::from(width)).abs() < 0.05);
+        assert!(deviation(&smooth) < 0.01);
+    }
+    for &(width, spread) in rough {
         let rows = widths(&mut small, width, plain(spread, 0.0));
         let (mean, deviation) = (mean(&rows), deviation(&rows));
         let edge = f64::from((0.5 * spread).min(0.375 * width)) * 0.4;
@@ -180,40 +196,40 @@ fn a_dry_brush_leaves_streaks_in_wide_lines() {
 /// Truth: the mean tone of a flat field of dots stays within 1 %, of every shape.
 #[test]
 fn dots_keep_their_mean_tone_on_paper() {
-    dots_keep_their_mean_tone(&[0.05, 0.5]);
+    let lights = [0.05, 0.5].into_iter().cycle();
+    dots_keep_their_mean_tone(lights.zip(SHAPES));
 }
 
 #[test]
 #[ignore = "long: five tones of large pages"]
 fn dots_keep_their_mean_tone_on_paper_at_every_tone() {
-    dots_keep_their_mean_tone(&[0.05, 0.3, 0.5, 0.8, 0.95]);
+    let lights = [0.05, 0.3, 0.5, 0.8, 0.95].into_iter();
+    dots_keep_their_mean_tone(lights.flat_map(|light| SHAPES.map(|shape| (light, shape))));
 }
 
-fn dots_keep_their_mean_tone(lights: &[f32]) {
+fn dots_keep_their_mean_tone(cases: impl Iterator<Item = (f32, ScreenShape)>) {
     let mut small = towards_the_sky(UVec2::new(256, 192));
-    for &light in lights {
+    for (light, shape) in cases {
         fill(&mut small, Color::linear_rgb(light, light, light));
-        for shape in SHAPES {
-            let halftone = Halftone {
-                shape,
-                mode: HalftoneMode::Spot,
-                ..ideal()
-            };
-            let mut shown = |spread: f32| {
-                let style = ComicStyle::new().with(halftone).with(plain(spread, 0.0));
-                small.style(&style);
-                small.settle();
-                let (_, after) = small.pass();
-                let reds = after.pixels.iter().map(|p| f64::from(p[0]));
-                reds.collect::<Vec<f64>>()
-            };
-            let (smooth, rough) = (shown(0.0), shown(2.0));
-            let changed = smooth.iter().zip(&rough);
-            let changed = changed.filter(|(a, b)| (*a - *b).abs() > 0.05).count();
-            assert!(changed > smooth.len() / 50, "{shape:?}, {light}");
-            let off = (mean(&rough) - mean(&smooth)).abs();
-            assert!(off < 0.01, "{shape:?}, {light}: {off}");
-        }
+        let halftone = Halftone {
+            shape,
+            mode: HalftoneMode::Spot,
+            ..ideal()
+        };
+        let mut shown = |spread: f32| {
+            let style = ComicStyle::new().with(halftone).with(plain(spread, 0.0));
+            small.style(&style);
+            small.settle();
+            let (_, after) = small.pass();
+            let reds = after.pixels.iter().map(|p| f64::from(p[0]));
+            reds.collect::<Vec<f64>>()
+        };
+        let (smooth, rough) = (shown(0.0), shown(2.0));
+        let changed = smooth.iter().zip(&rough);
+        let changed = changed.filter(|(a, b)| (*a - *b).abs() > 0.05).count();
+        assert!(changed > smooth.len() / 50, "{shape:?}, {light}");
+        let off = (mean(&rough) - mean(&smooth)).abs();
+        assert!(off < 0.01, "{shape:?}, {light}: {off}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -221,13 +237,26 @@ fn dots_keep_their_mean_tone(lights: &[f32]) {
 /// Values out of range, thin lines on the roughest paper, and a scale factor of 3.
 #[test]
 fn extreme_inks_on_paper_are_finite() {
+    extreme_inks_are_finite(&[(1.0, &EXTREMES), (3.0, &[f32::NAN, 1e30])]);
+}
+
+#[test]
+#[ignore = "long: every value at both scale factors"]
+fn extreme_inks_on_paper_are_finite_at_every_scale_factor() {
+    extreme_inks_are_finite(&[(1.0, &EXTREMES), (3.0, &EXTREMES)]);
+}
+
+const EXTREMES: [f32; 5] = [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30];
+
+/// `inks`: values at scale factors.
+fn extreme_inks_are_finite(inks: &[(f32, &[f32])]) {
     let size = UVec2::new(48, 32);
     let mut small = Small::new(size, Msaa::Off);
-    for scale in [1.0, 3.0] {
+    for &(scale, values) in inks {
         small.headless.resize(size, scale);
         let target = small.headless.render_target();
         small.insert(target);
-        for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
+        for &x in values {
             for width in [0.5, 16.0] {
                 let paper = Paper {
                     ink_bleed: x,

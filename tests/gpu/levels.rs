@@ -50,7 +50,7 @@ fn ink(small: &mut Small, distance: f32) -> (f32, usize) {
 #[test]
 fn levels_keep_their_outline_while_they_fade() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(384, 256), msaa);
+        let mut small = Small::new(UVec2::new(192, 128), msaa);
         small.style(&ComicStyle::new().with(Outlines::default()));
         let whole: Vec<_> = [4.5, 16.0].map(|at| ink(&mut small, at)).to_vec();
         let expected = (whole[0].0 + whole[1].0) / 2.0;

@@ -134,6 +134,7 @@ fn true_sides(seen: &Seen) -> HashSet<([i64; 2], usize)> {
 }
 
 #[test]
+#[ignore = "long: a large picture; quick test line_truth::a_strong_edge_nearby_hides_no_edge"]
 fn sides_of_the_lid_have_lines() {
     let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Off);
     studio.shoot(Some(&ComicStyle::new().with(Outlines::default())));

@@ -229,7 +229,7 @@ const REPORTED: UVec2 = UVec2::new(240, 136);
 const DISTANT_ANGLES: [f32; 2] = [15.0 / 90.0 * TAU, 60.0 / 90.0 * TAU];
 
 #[test]
-#[ignore = "long: large pictures; `closed_gaps_make_distant_wires_whole` has distant wires"]
+#[ignore = "long: large pictures; quick test line_quality::lines_of_models_follow_their_edges"]
 fn lines_of_distant_models_follow_their_edges() {
     let mut pictures = Pictures::new(REPORTED, scored(1.0));
     let width = pictures.fine_width();
@@ -308,6 +308,7 @@ fn turning_shapes_have_few_dashes() {
 /// their gaps closed, more of them have lines, these are in fewer pieces, and hardly more lines are
 /// wrong.
 #[test]
+#[ignore = "long: large pictures; quick test bridge::thin_wires_at_small_angles_are_whole"]
 fn closed_gaps_make_distant_wires_whole() {
     let mut pictures = Pictures::new(REPORTED, ids_alone());
     pictures.show(Specimen::Wires);

@@ -247,7 +247,7 @@ fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
 /// Every line of the teapot that the geometry has at four times the resolution is drawn,
 /// with lines of 1 pixel, at most one pixel away. Its lid has layers that lie close.
 #[test]
-#[ignore = "long: a large picture; `sides_of_the_lid_have_lines` has the layers"]
+#[ignore = "long: a large picture; quick test line_truth::a_strong_edge_nearby_hides_no_edge"]
 fn every_line_of_the_teapot_is_drawn() {
     let size = UVec2::new(320, 180);
     let studio = |fine: u32| {

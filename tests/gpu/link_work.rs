@@ -83,22 +83,39 @@ fn kernels(small: &mut Small, outlines: Outlines) -> BTreeSet<String> {
 /// Lines along cracks that are neither linked nor weighed are not completed.
 #[test]
 fn outlines_dispatch_no_more_kernels_than_they_need() {
-    // `count_ids` runs now and then: whether pixels of the prepass have no id.
-    let always = "object_ids count_ids walk list_tiles find_in_cells draw_lines stylize";
-    let names = |more: &str| -> BTreeSet<String> {
-        let all = always.split(' ').chain(more.split_terminator(' '));
-        all.map(str::to_owned).collect()
-    };
-    let app = || Small::alone(options(UVec2::new(96, 64)), Msaa::Off);
-    let mut small = app();
-    assert_eq!(kernels(&mut small, along_cracks()), names(""));
-    let wide = Outlines {
+    assert_kernels(&[
+        (along_cracks(), ""),
+        (Outlines::default(), COMPLETING),
+        (wide_along_cracks(), COLUMNS),
+    ]);
+}
+
+/// No kernels of another style hide those of wide lines and of default ones.
+#[test]
+#[ignore = "long: two apps; quick test link_work::outlines_dispatch_no_more_kernels_than_they_need"]
+fn outlines_in_apps_of_their_own_dispatch_no_more_kernels_than_they_need() {
+    assert_kernels(&[(along_cracks(), ""), (wide_along_cracks(), COLUMNS)]);
+    assert_kernels(&[(Outlines::default(), COMPLETING)]);
+}
+
+const COMPLETING: &str = "link_lines join_lines measure_lines settle_lines";
+const COLUMNS: &str = "line_columns";
+
+fn wide_along_cracks() -> Outlines {
+    Outlines {
         width: 16.0,
         ..along_cracks()
-    };
-    assert_eq!(kernels(&mut small, wide), names("line_columns"));
-    assert_eq!(
-        kernels(&mut app(), Outlines::default()),
-        names("link_lines join_lines measure_lines settle_lines")
-    );
+    }
+}
+
+/// In one new app: each of the styles adds these kernels.
+fn assert_kernels(styles: &[(Outlines, &str)]) {
+    // `count_ids` runs now and then: whether pixels of the prepass have no id.
+    let always = "object_ids count_ids walk list_tiles find_in_cells draw_lines stylize";
+    let mut names: BTreeSet<String> = always.split(' ').map(str::to_owned).collect();
+    let mut small = Small::alone(options(UVec2::new(96, 64)), Msaa::Off);
+    for (outlines, more) in styles {
+        names.extend(more.split_terminator(' ').map(str::to_owned));
+        assert_eq!(kernels(&mut small, *outlines), names);
+    }
 }

@@ -122,8 +122,18 @@ fn weak(continuity: f32) -> Outlines {
 /// Views of sizes that no word, block, cell or tile divides, and views that are smaller than each.
 #[test]
 fn lines_match_the_reference_in_views_of_odd_sizes() {
+    assert_views_of_sizes(&[[61, 37], [131, 33], [1, 1], [2, 3], [13, 7]]);
+}
+
+#[test]
+#[ignore = "long: a larger view; quick test links::lines_match_the_reference_in_views_of_odd_sizes"]
+fn lines_match_the_reference_in_a_larger_view_of_odd_size() {
+    assert_views_of_sizes(&[[97, 65]]);
+}
+
+fn assert_views_of_sizes(sizes: &[[u32; 2]]) {
     let mut small = Small::new(UVec2::new(61, 37), Msaa::Off);
-    for size in [[61, 37], [97, 65], [131, 33], [1, 1], [2, 3], [13, 7]] {
+    for &size in sizes {
         small.headless.resize(size.into(), 1.0);
         small.restart(Msaa::Off);
         for outlines in [Outlines::default(), weak(8.0)] {
@@ -137,7 +147,7 @@ fn lines_match_the_reference_in_views_of_odd_sizes() {
 #[test]
 fn lines_continue_as_far_as_asked() {
     let cases = [(0.0, 2), (7.0, 1), (8.0, 3), (9.0, 7), (23.5, 2), (32.0, 3)];
-    assert_continued_as_reference(cases);
+    assert_continued_as_reference(UVec2::new(61, 37), cases);
 }
 
 #[test]
@@ -145,11 +155,12 @@ fn lines_continue_as_far_as_asked() {
 fn lines_continue_as_far_as_asked_with_any_specks() {
     let distances = [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0];
     let with_specks = |continuity| [1, 2, 3, 7].map(|specks| (continuity, specks));
-    assert_continued_as_reference(distances.into_iter().flat_map(with_specks));
+    let cases = distances.into_iter().flat_map(with_specks);
+    assert_continued_as_reference(UVec2::new(96, 64), cases);
 }
 
-fn assert_continued_as_reference(cases: impl IntoIterator<Item = (f32, u32)>) {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+fn assert_continued_as_reference(size: UVec2, cases: impl IntoIterator<Item = (f32, u32)>) {
+    let mut small = Small::new(size, Msaa::Off);
     for (continuity, specks) in cases {
         let outlines = Outlines {
             min_length: specks,

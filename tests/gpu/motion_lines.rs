@@ -250,7 +250,7 @@ fn they_go_with_their_object() {
     let meshes = |stage: &mut Stage| stage.small.world().resource::<Assets<Mesh>>().len();
     stage.dash(12);
     let before = meshes(&mut stage);
-    for _ in 0..6 {
+    for _ in 0..2 {
         stage.dash(20);
         assert_eq!(stage.ribbons(), 1);
     }
@@ -321,7 +321,7 @@ fn lines_are_as_wide_as_asked_in_pixels() {
             ..lines()
         };
         stage.small.on(mesh).insert(one);
-        stage.dash(40);
+        stage.dash(24);
         let picture = stage.small.picture();
         let column = |x: u32| black_ink(&picture, (0..SIZE.y).map(|y| (x, y)));
         let widest = (0..SIZE.x).map(column).fold(0.0, f64::max);

@@ -280,6 +280,16 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
 /// equations, whose threshold is one of raw depth and says nothing about a jump between surfaces.
 #[test]
 fn measured_creases_are_whole_beside_faithful_silhouettes() {
+    assert_measured_creases_are_whole(&[1e-2, 1e2], &[1e-6, 8e-4, 0.5]);
+}
+
+#[test]
+#[ignore = "long: more scales and thresholds"]
+fn measured_creases_are_whole_beside_silhouettes_of_more_thresholds() {
+    assert_measured_creases_are_whole(&[1e-2, 1.0, 1e2], &[1e-6, 1e-4, 8e-4, 0.02, 0.5]);
+}
+
+fn assert_measured_creases_are_whole(scales: &[f32], thresholds: &[f32]) {
     let mut small = Small::new(UVec2::new(160, 120), Msaa::Off);
     let creases = |silhouettes| Outlines {
         silhouettes,
@@ -287,7 +297,7 @@ fn measured_creases_are_whole_beside_faithful_silhouettes() {
         objects: None,
         ..default()
     };
-    for scale in [1e-2, 1.0, 1e2] {
+    for &scale in scales {
         small.restart(Msaa::Off);
         small.clear();
         let turned = Transform::from_rotation(Quat::from_rotation_y(0.6));
@@ -298,7 +308,7 @@ fn measured_creases_are_whole_beside_faithful_silhouettes() {
         let alone = ink(&mut small, creases(None));
         let pixels = alone.iter().filter(|ink| **ink > 0.5).count();
         assert!(pixels > 150, "scale {scale}: {pixels}");
-        for threshold in [1e-6, 1e-4, 8e-4, 0.02, 0.5] {
+        for &threshold in thresholds {
             let silhouettes = Silhouettes {
                 equations: Equations::Faithful,
                 threshold,

@@ -72,6 +72,17 @@ fn every_pixel_matches_the_reference() {
 /// paper, while its pixels vary.
 #[test]
 fn the_mean_tone_stays() {
+    assert_mean_tone_stays([0, 1, 5, 9, 10]);
+}
+
+#[test]
+#[ignore = "long: eleven tones"]
+fn the_mean_tone_stays_at_every_tone() {
+    assert_mean_tone_stays(std::array::from_fn::<u8, 11, _>(|tone| tone as u8));
+}
+
+/// Tones in tenths.
+fn assert_mean_tone_stays<const N: usize>(tones: [u8; N]) {
     let page = UVec2::new(256, 192);
     let mut small = flat(page, 1.0);
     small.insert(Hdr);
@@ -81,7 +92,7 @@ fn the_mean_tone_stays() {
             color: Color::WHITE,
             ..default()
         };
-        for tone in 0..=10u8 {
+        for tone in tones {
             let light = f32::from(tone) / 10.0;
             paint(&mut small, light);
             small.insert(settings).settle();

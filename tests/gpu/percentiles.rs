@@ -55,7 +55,9 @@ fn every_shape_counts_in_the_bins_of_the_window() {
         let mut depths = table(&mut random, window, wide, 0.01);
         depths[7] = 0.0;
         depths[8] = f32::NAN;
-        let valid = depths.iter().filter(|d| **d > 0.0).count() as u32;
+        let mut sorted: Vec<f32> = depths.iter().copied().filter(|d| *d > 0.0).collect();
+        sorted.sort_by(f32::total_cmp);
+        let valid = sorted.len() as u32;
         for shape in SHAPES {
             let defs: Vec<&str> = (shape.iter().copied())
                 .chain(["HISTOGRAM", "ORTHOGRAPHIC"])
@@ -74,10 +76,7 @@ fn every_shape_counts_in_the_bins_of_the_window() {
                 let edge = bins.edge(bin);
                 let from_end = (edge - f64::from(far)).min(f64::from(near) - edge);
                 let slack = 8.0 * f64::from(f32::EPSILON) * from_end;
-                let below = |edge: f64| {
-                    let inside = |d: &&f32| **d > 0.0 && f64::from(**d) < edge;
-                    depths.iter().filter(inside).count() as u32
-                };
+                let below = |edge: f64| sorted.partition_point(|d| f64::from(*d) < edge) as u32;
                 let (least, most) = (below(edge - slack), below(edge + slack));
                 assert!(
                     (least..=most).contains(&sum),

@@ -25,7 +25,7 @@ fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
     let world = headless.app.world_mut();
     let style = world
         .resource::<AssetServer>()
-        .load(presets::GRAPHIC_NOVEL.path());
+        .load(presets::SATURDAY_MORNING.path());
     let own_map = DepthMap {
         smoothing: None,
         ..default()

@@ -268,11 +268,13 @@ fn put_plate(small: &mut Small, pieces: &[Piece]) -> Entity {
     small.put(mesh, unlit(Color::WHITE), at)
 }
 
-/// The widths of even lines are these.
-fn assert_even(small: &mut Small, columns: Range<u32>, want: f64) {
+/// The widths of even lines are these, in columns of one picture.
+fn assert_even(small: &mut Small, parts: &[(Range<u32>, f64)]) {
     let picture = small.outlined(lines(LineWeight::EVEN));
-    for found in ink(&picture, columns, 25..55) {
-        assert!((found - want).abs() < NEAR, "{found}, {want}");
+    for (columns, want) in parts {
+        for found in ink(&picture, columns.clone(), 25..55) {
+            assert!((found - want).abs() < NEAR, "{found}, {want}");
+        }
     }
 }
 
@@ -296,10 +298,11 @@ fn vertices_say_how_wide_lines_are() {
             } else {
                 small.on(plate).remove::<LineWidths>();
             }
-            for (i, alpha) in (0..).zip(alphas) {
+            let parts = (0..).zip(alphas).map(|(i, alpha)| {
                 let want = if with { 8.0 * alpha } else { 4.0 };
-                assert_even(&mut small, 100 * i + 20..100 * i + 80, f64::from(want));
-            }
+                (100 * i + 20..100 * i + 80, f64::from(want))
+            });
+            assert_even(&mut small, &parts.collect::<Vec<_>>());
             assert_eq!(small.line_widths().is_some(), with, "{msaa:?}");
         }
         assert_eq!(small.errors(), 0);
@@ -327,15 +330,15 @@ fn widths_of_vertices_run_into_each_other_and_are_inherited() {
     small.clear();
     let plain = wall(&mut small, [-200.0, -60.0], [200.0, 0.0], 100.0);
     small.on(plain).insert(LineWidths::default());
-    assert_even(&mut small, 20..380, 4.0);
+    assert_even(&mut small, &[(20..380, 4.0)]);
     small.clear();
     let plate = put_ramp(&mut small, [1.0; 2]);
     let parts = (Transform::default(), Visibility::default());
     let root = small.world().spawn(parts).add_child(plate).id();
     small.on(root).insert(LineWidths { inherit: false });
-    assert_even(&mut small, 20..380, 4.0);
+    assert_even(&mut small, &[(20..380, 4.0)]);
     small.on(root).insert(LineWidths::default());
-    assert_even(&mut small, 20..380, 8.0);
+    assert_even(&mut small, &[(20..380, 8.0)]);
     assert_eq!(small.errors(), 0);
 }
 

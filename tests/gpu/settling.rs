@@ -165,7 +165,7 @@ fn a_still_view_ends_with_its_own_range_whatever_came_before() {
 fn noises(view: [f32; 2], by: f32, seconds: f64) -> Vec<(&'static str, Vec<Frame>)> {
     let mut random = Random::new(9);
     let frames = |wave: &mut dyn FnMut(f64) -> f32| -> Vec<Frame> {
-        (0..2400)
+        (0..1200)
             .map(|i| {
                 let by = 1.0 + by * wave(f64::from(i) * seconds);
                 frame(view[0] * by, view[1] * by, seconds)

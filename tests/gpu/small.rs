@@ -5,6 +5,7 @@ use bevy::{
     camera::{CameraProjection, SubCameraView},
     math::Vec3A,
     render::error_handler::RenderErrorPolicy,
+    time::TimeUpdateStrategy,
 };
 use bevy_comics_testkit::{
     before::BeforeStylize,
@@ -13,7 +14,7 @@ use bevy_comics_testkit::{
     reference::{color, resolve::Prepass},
 };
 
-use crate::prelude::*;
+use crate::{prelude::*, upscaled::OverrideMainPass};
 
 /// Errors that the renderer reported.
 #[derive(Resource, Default)]
@@ -49,8 +50,10 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
     )
 }
 
-fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
-    let mut headless = Headless::new(options, ((ComicsPlugin, BeforeStylize::Copy), more));
+/// A new app.
+pub fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
+    let usual = (ComicsPlugin, BeforeStylize::Copy, OverrideMainPass);
+    let mut headless = Headless::new(options, (usual, more));
     headless
         .app
         .init_resource::<RenderErrors>()
@@ -66,7 +69,7 @@ fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
 static POOL: Pool = Pool::new(|options| start(options, ()), draw_once);
 
 /// Draws the small scene with lines, with an image that is new.
-fn draw_once(headless: &mut Headless) {
+pub fn draw_once(headless: &mut Headless) {
     let target = headless.render_target();
     let world = headless.app.world_mut();
     spawn_objects(world);
@@ -100,7 +103,8 @@ impl Small {
         Self::of(start(options, more), msaa)
     }
 
-    fn of(mut headless: Headless, msaa: Msaa) -> Self {
+    /// The small scene in an app that has the plugins of [`start`].
+    pub fn of(mut headless: Headless, msaa: Msaa) -> Self {
         spawn_objects(headless.app.world_mut());
         let target = headless.render_target();
         let camera = headless.app.world_mut().spawn(camera(target, msaa)).id();
@@ -193,6 +197,15 @@ impl Small {
             before = Some(now);
         }
         self
+    }
+
+    /// Lets time pass, in frames of 100 ms.
+    pub fn wait(&mut self, seconds: f32) {
+        let longer = TimeUpdateStrategy::ManualDuration(Duration::from_millis(100));
+        let mut strategy = self.world().resource_mut::<TimeUpdateStrategy>();
+        let usual = std::mem::replace(&mut *strategy, longer);
+        self.headless.step((10.0 * seconds).round() as usize);
+        self.world().insert_resource(usual);
     }
 
     pub fn picture(&mut self) -> image::RgbaImage {

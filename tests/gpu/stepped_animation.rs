@@ -2,13 +2,15 @@
 
 use bevy::{ecs::change_detection::DetectChanges, render::render_resource::PrimitiveTopology};
 use bevy_comics::SteppedAnimation;
+use bevy_comics_testkit::pool::Pool;
 use image::RgbaImage;
 
 use crate::{
     floating_origin::shift,
     line_scenes::{mean, runs, skinned},
     prelude::*,
-    walls::towards_the_sky,
+    small::{draw_once, start},
+    walls::towards_the_sky_again,
 };
 
 const SIZE: UVec2 = UVec2::new(192, 64);
@@ -38,11 +40,22 @@ fn look(places: Query<Ref<GlobalTransform>, With<Mesh3d>>, mut seen: ResMut<Seen
     seen.changes += places.iter().filter(Ref::is_changed).count();
 }
 
+/// Apps whose systems walk, rise and look.
+static POOL: Pool = Pool::new(new, draw_once);
+
+fn new(options: HeadlessOptions) -> Headless {
+    let mut headless = start(options, ());
+    let app = headless.app.init_resource::<Seen>();
+    app.add_systems(Update, (walk, rise))
+        .add_systems(First, look)
+        .add_systems(Last, look);
+    headless
+}
+
 /// A view towards the sky, one unit per pixel.
 fn stage() -> Small {
-    let mut small = towards_the_sky(SIZE);
-    let app = &mut small.headless.app;
-    app.init_resource::<Seen>().add_systems(Update, walk);
+    let mut small = Small::of(POOL.take(options(SIZE)), Msaa::Off);
+    towards_the_sky_again(&mut small, Msaa::Off);
     small
 }
 
@@ -107,8 +120,7 @@ fn the_game_sees_the_truth() {
         }
         // Until pipelines are compiled, a step is several frames.
         small.headless.step(3);
-        let app = &mut small.headless.app;
-        app.add_systems(First, look).add_systems(Last, look);
+        small.world().insert_resource(Seen::default());
         // Two drawings, and parts of two.
         let seen = (0..12).map(|_| {
             small.headless.step(1);
@@ -218,7 +230,6 @@ fn rise(mut joints: Query<&mut Transform, With<Rises>>, time: Res<Time>) {
 fn skins_are_held() {
     let run = |held: bool| {
         let mut small = stage();
-        small.headless.app.add_systems(Update, rise);
         put_strip(&mut small, held);
         small.headless.step(3);
         small.film(20)

@@ -7,8 +7,8 @@ use bevy_comics_testkit::reference::stipple::dot_radius;
 use crate::{
     hatched_material::assert_marks_stay,
     hatching::{
-        LIGHTS, SIZE, THREE_LIGHTS, TWO_WALLS, WALLS, assert_marks_travel, covers, empty,
-        fields_keep_their_mean_tone, flat, largest_change, tone,
+        Field, PARTS_OF_THE_WAY, SIZE, THREE_FIELDS, WHOLE_WAY, assert_marks_travel, covers, empty,
+        every_field, fields_keep_their_mean_tone, flat, largest_change, tone,
     },
     prelude::*,
 };
@@ -31,18 +31,18 @@ fn random() -> Hatching {
 /// angle and distance, in rows and at random.
 #[test]
 fn flat_fields_of_dots_keep_their_mean_tone() {
-    dots_keep_their_mean_tone(&THREE_LIGHTS, &TWO_WALLS);
+    dots_keep_their_mean_tone(&THREE_FIELDS);
 }
 
 #[test]
 #[ignore = "long: five tones of four walls"]
 fn flat_fields_of_dots_keep_their_mean_tone_on_every_wall() {
-    dots_keep_their_mean_tone(&LIGHTS, &WALLS);
+    dots_keep_their_mean_tone(&every_field());
 }
 
-fn dots_keep_their_mean_tone(lights: &[f32], walls: &[(f32, f32)]) {
+fn dots_keep_their_mean_tone(fields: &[Field]) {
     // About a thousand dots: a row more or less at the borders is a hundredth.
-    fields_keep_their_mean_tone(lights, walls, &[(plain(), 0.02), (random(), 0.02)]);
+    fields_keep_their_mean_tone(fields, &[(plain(), 0.02), (random(), 0.02)]);
 }
 
 /// A dot: its middle in pixels from the middle of the picture, and its area in pixels.
@@ -92,6 +92,16 @@ fn dots(covers: &[f64]) -> Vec<Dot> {
 /// distance, where four times as many are on as much of the wall.
 #[test]
 fn dots_stay_and_more_of_them_grow() {
+    assert_dots_stay(&[8.0, 10.5, 14.0]);
+}
+
+#[test]
+#[ignore = "long: more distances; quick test stipple::dots_stay_and_more_of_them_grow"]
+fn dots_stay_and_more_of_them_grow_at_every_distance() {
+    assert_dots_stay(&[8.0, 9.0, 10.5, 12.0, 14.0]);
+}
+
+fn assert_dots_stay(distances: &[f32]) {
     let mut small = empty();
     let light = 0.4;
     let s = Hatching {
@@ -100,7 +110,7 @@ fn dots_stay_and_more_of_them_grow() {
     };
     let varied = Hatching { pressure: 1.0, ..s };
     let area = PI * dot_radius(&s, 9.0).powi(2);
-    for distance in [8.0, 9.0, 10.5, 12.0, 14.0] {
+    for &distance in distances {
         let mut far_and_near = |s: Hatching| {
             [distance, 0.5 * distance].map(|distance| {
                 small.clear();
@@ -164,17 +174,19 @@ fn dots_stay_and_more_of_them_grow() {
 /// changes by more than the motion and the growth of a dot explain.
 #[test]
 fn dots_grow_while_the_camera_comes_nearer() {
-    assert_dots_grow(random());
+    assert_dots_grow(random(), PARTS_OF_THE_WAY);
 }
 
 #[test]
-#[ignore = "long: an octave, of dots of one size in rows"]
-fn dots_in_rows_grow_while_the_camera_comes_nearer() {
-    assert_dots_grow(plain());
+#[ignore = "long: an octave, of dots of one size in rows as well"]
+fn dots_grow_through_an_octave() {
+    for s in [plain(), random()] {
+        assert_dots_grow(s, WHOLE_WAY);
+    }
 }
 
-fn assert_dots_grow(s: Hatching) {
-    let largest = largest_change(0.2, 25.0, s);
+fn assert_dots_grow(s: Hatching, way: &[[i32; 2]]) {
+    let largest = largest_change(0.2, 25.0, s, way);
     // Within 20 pixels of the middle, things move by 0.1 pixels. While there are x^2 dots for each
     // old one, the newest grows by 2 * 0.005 * x^2 of its area in a frame: the last of three begins
     // at x^2 = 3.

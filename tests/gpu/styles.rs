@@ -123,10 +123,12 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
     })
 }
 
+/// As many styles as the variable `FUZZ_CASES` says, else 400.
 #[test]
 fn a_style_saved_and_loaded_is_equal() {
+    let given = std::env::var("FUZZ_CASES").ok();
     TestRunner::new(ProptestConfig {
-        cases: 2000,
+        cases: given.and_then(|text| text.parse().ok()).unwrap_or(400),
         ..default()
     })
     .run(&styles(), |style| {
@@ -177,16 +179,22 @@ impl Drop for Folder {
     }
 }
 
-/// Steps until the camera's contours satisfy `done`; false after this many frames.
-fn wait(small: &mut Small, frames: usize, done: impl Fn(Option<&Contours>) -> bool) -> bool {
+/// Steps until the app satisfies `done`; false after this many frames.
+fn wait(small: &mut Small, frames: usize, done: impl Fn(&Small) -> bool) -> bool {
     for _ in 0..frames {
         small.headless.step(1);
-        if done(small.headless.app.world().get(small.camera)) {
+        if done(small) {
             return true;
         }
         std::thread::sleep(Duration::from_millis(25));
     }
     false
+}
+
+/// The width of the camera's contours.
+fn width(small: &Small) -> Option<f32> {
+    let contours = small.headless.app.world().get::<Contours>(small.camera);
+    contours.map(|contours| contours.width)
 }
 
 #[test]
@@ -203,10 +211,11 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let mut small = Small::with(with_watcher, Msaa::Off);
     let server = small.world().resource::<AssetServer>();
     let handle = server.load("mine.comic.ron");
+    let id = handle.id();
     small.insert(Comic(handle));
     // Ten seconds.
     let becomes =
-        |small: &mut Small, width: f32| wait(small, 400, |c| c.is_some_and(|c| c.width == width));
+        |small: &mut Small, wanted: f32| wait(small, 400, |small| width(small) == Some(wanted));
     assert!(becomes(&mut small, 3.0), "the style did not load");
 
     write("(version: 3, contours: (width: 5.0), desaturation: ())");
@@ -215,7 +224,12 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     assert!(small.world().get::<Desaturation>(camera).is_some());
 
     write("(version: 3, contours: (width: ");
-    let changes = wait(&mut small, 40, |c| c.is_none_or(|c| c.width != 5.0));
+    let is_read = wait(&mut small, 400, |small| {
+        let server = small.headless.app.world().resource::<AssetServer>();
+        server.load_state(id).is_failed()
+    });
+    assert!(is_read, "the broken file was not read");
+    let changes = wait(&mut small, 5, |small| width(small) != Some(5.0));
     assert!(!changes, "the last good look is kept");
 
     write("(version: 3, contours: (width: 7.0))");
@@ -224,6 +238,6 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     assert!(lost, "what the style lost, the camera lost");
 
     small.camera_mut().remove::<Comic>();
-    let is_bare = wait(&mut small, 400, |c| c.is_none());
+    let is_bare = wait(&mut small, 400, |small| width(small).is_none());
     assert!(is_bare, "without the handle there is no look");
 }

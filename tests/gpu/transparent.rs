@@ -10,7 +10,11 @@ const CODE: f32 = 1.0 / 255.0;
 
 /// The small scene, without a background.
 fn small() -> Small {
-    let mut small = Small::new(size(), Msaa::Off);
+    small_of(size())
+}
+
+fn small_of(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
     again(&mut small, Msaa::Off);
     small
 }
@@ -157,7 +161,8 @@ fn weight_and_split_mix_the_opacity_too() {
 /// Presets that print, and that draw on paper.
 #[test]
 fn presets_match_the_reference_without_a_background() {
-    check_presets(&mut small(), &[presets::POP_POSTER, presets::PENCIL_SKETCH]);
+    let mut small = small_of(UVec2::new(64, 44));
+    check_presets(&mut small, &[presets::POP_POSTER, presets::PENCIL_SKETCH]);
 }
 
 #[test]

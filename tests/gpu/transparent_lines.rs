@@ -413,9 +413,8 @@ impl<const PREPASS: bool> Material for Foreign<PREPASS> {
     }
 }
 
-fn pixels_of_foreign<const PREPASS: bool>() -> usize {
-    let plugin = MaterialPlugin::<Foreign<PREPASS>>::default();
-    let mut small = Small::with_plugins(options(UVec2::splat(SIDE)), Msaa::Off, plugin);
+fn pixels_of_foreign<const PREPASS: bool>(small: &mut Small) -> usize {
+    small.restart(Msaa::Off);
     small.clear();
     small.insert(Transform::from_xyz(0.0, 0.0, 3.0));
     let mut materials = small.world().resource_mut::<Assets<Foreign<PREPASS>>>();
@@ -435,7 +434,12 @@ fn pixels_of_foreign<const PREPASS: bool>() -> usize {
 fn other_materials_are_drawn_whole_or_not_at_all() {
     // One unit at distance 3, with the field of view of 45 degrees of the default.
     let side = SIDE as f32 / (2.0 * 3.0 * std::f32::consts::FRAC_PI_8.tan());
-    let count = pixels_of_foreign::<true>() as f32;
+    let plugins = (
+        MaterialPlugin::<Foreign<true>>::default(),
+        MaterialPlugin::<Foreign<false>>::default(),
+    );
+    let small = &mut Small::with_plugins(options(UVec2::splat(SIDE)), Msaa::Off, plugins);
+    let count = pixels_of_foreign::<true>(small) as f32;
     assert!((count - side * side).abs() <= 2.0 * side + 1.0, "{count}");
-    assert_eq!(pixels_of_foreign::<false>(), 0);
+    assert_eq!(pixels_of_foreign::<false>(small), 0);
 }

@@ -25,9 +25,28 @@ fn wide_lines_match_the_reference() {
 /// corners, end at curves and corners.
 #[test]
 fn lines_near_diagonals_match_the_reference() {
+    // Each angle in one quarter of both kinds.
+    let [some, others] = [&[-44.0, 0.0][..], &[-6.3, 0.9][..]];
+    let quarters = [(0.0, some), (90.0, others), (180.0, others), (270.0, some)];
+    let discs = [(11.0, 1.0), (14.0, 3.0), (21.7, 1.0), (30.3, 3.0)];
+    assert_runs(quarters, discs);
+}
+
+#[test]
+#[ignore = "long: every angle in every quarter"]
+fn lines_near_diagonals_match_the_reference_in_every_quarter() {
+    let angles = &[-44.0, -6.3, 0.0, 0.9][..];
+    let radii = [11.0, 14.0, 21.7, 30.3].into_iter();
+    let discs = radii.flat_map(|radius| [(radius, 1.0), (radius, 3.0)]);
+    let quarters = [0.0, 90.0, 180.0, 270.0];
+    assert_runs(quarters.map(|quarter| (quarter, angles)), discs);
+}
+
+/// `quarters`: degrees, and from their diagonals; `discs`: radii, and widths of lines.
+fn assert_runs(quarters: [(f32, &[f32]); 4], discs: impl IntoIterator<Item = (f32, f32)>) {
     let mut small = towards_the_sky(UVec2::splat(72));
-    for quarter in [0.0, 90.0, 180.0, 270.0] {
-        for from_diagonal in [-44.0, -6.3, 0.0, 0.9] {
+    for (quarter, angles) in quarters {
+        for from_diagonal in angles {
             let degrees: f32 = quarter + 45.0 + from_diagonal;
             small.clear();
             let turn = Quat::from_rotation_z(degrees.to_radians());
@@ -38,7 +57,7 @@ fn lines_near_diagonals_match_the_reference() {
             assert_pass_matches_the_reference(&mut small, &style, None, &what);
         }
     }
-    for radius in [11.0, 14.0, 21.7, 30.3] {
+    for (radius, width) in discs {
         small.clear();
         let at = Transform::from_xyz(0.31, -0.17, -10.0);
         put(&mut small, Circle::new(radius), Color::WHITE, at);
@@ -49,13 +68,11 @@ fn lines_near_diagonals_match_the_reference() {
             Color::WHITE,
             turned(0.1, 0.4, -5.0, 0.8),
         );
-        for width in [1.0, 3.0] {
-            let (style, what) = (
-                outlined(silhouettes(width)),
-                format!("{radius}, {width} px"),
-            );
-            assert_pass_matches_the_reference(&mut small, &style, None, &what);
-        }
+        let (style, what) = (
+            outlined(silhouettes(width)),
+            format!("{radius}, {width} px"),
+        );
+        assert_pass_matches_the_reference(&mut small, &style, None, &what);
     }
     assert_eq!(small.errors(), 0);
 }

@@ -176,3 +176,30 @@ fn create(path: &Path) -> Result<File, String> {
 fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> String {
     format!("cannot write {}: {error}", path.display())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_numbered_as_the_name_says() {
+        let folder = format!("bevy-comics-numbered-{}", std::process::id());
+        let folder = std::env::temp_dir().join(folder);
+        let out = folder.join("new").join("a%02d.png");
+        let frames = Frames::parse(out.to_str().expect("a name"));
+        let mut writer = FrameWriter::new(&frames, (4, 3), 3, 1.0).expect("a writer");
+        for _ in 0..3 {
+            writer.add(RgbaImage::new(4, 3)).expect("written");
+        }
+        let said = writer.finish().expect("written");
+        let names = ["a00.png", "a01.png", "a02.png"];
+        assert!(said.ends_with(names[2]), "{said}");
+        let entries = std::fs::read_dir(folder.join("new")).expect("the folder");
+        let mut paths: Vec<_> = entries.map(|entry| entry.expect("entry").path()).collect();
+        paths.sort();
+        assert_eq!(paths, names.map(|name| folder.join("new").join(name)));
+        let size = image::image_dimensions(&paths[0]).expect("a picture");
+        assert_eq!(size, (4, 3));
+        std::fs::remove_dir_all(folder).expect("the folder goes");
+    }
+}

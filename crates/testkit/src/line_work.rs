@@ -243,11 +243,6 @@ pub fn count_find(style: &ComicStyle) -> f64 {
     count_pass(&mut None, style, CELLS)[0]
 }
 
-/// The same of the pass that draws lines.
-pub fn count_draw(style: &ComicStyle) -> f64 {
-    count_pass(&mut None, style, DRAW)[0]
-}
-
 /// Texels that an execution of these statements loads. Loops run `rounds` times.
 fn loads(module: &Module, function: &Function, block: &Block, rounds: usize) -> usize {
     let within = |block: &Block| loads(module, function, block, rounds);

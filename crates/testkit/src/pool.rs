@@ -23,7 +23,7 @@ use bevy::{
     render::RenderApp,
     time::{Fixed, Real, TimeUpdateStrategy, Virtual},
 };
-use bevy_comics::{ReduceFlashing, objects::ObjectIdDepthTest};
+use bevy_comics::{ReduceFlashing, cameras::WorldOrigin, objects::ObjectIdDepthTest};
 
 use crate::{
     headless::{self, Headless, HeadlessOptions},
@@ -176,11 +176,13 @@ fn remove_spawned(headless: &mut Headless, baseline: &Baseline) {
 
 /// Whether a resource holds assets, messages, or what this crate keeps of materials and objects.
 fn goes_with_the_scene(world: &World, resource: ComponentId) -> bool {
-    const CONTENTS: [&str; 4] = [
+    const CONTENTS: [&str; 6] = [
         "bevy_asset::",
         "bevy_ecs::message::",
-        "bevy_comics::toon::",
+        "bevy_comics::animation::",
+        "bevy_comics::depth::",
         "bevy_comics::objects::",
+        "bevy_comics::toon::",
     ];
     let name = world.components().get_name(resource);
     name.is_some_and(|name| CONTENTS.iter().any(|start| name.starts_with(start)))
@@ -200,6 +202,7 @@ fn restore(world: &mut World) {
     world.insert_resource(DefaultOpaqueRendererMethod::default());
     world.insert_resource(ObjectIdDepthTest::default());
     world.insert_resource(ReduceFlashing::default());
+    world.remove_resource::<WorldOrigin>();
 }
 
 /// All entities, ordered.

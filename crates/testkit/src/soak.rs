@@ -167,7 +167,7 @@ impl Soak {
     pub fn with_pace(folder: &Path, changes: Changes, pace: Pace) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         fs::write(folder.join(FILE), mended(0))?;
-        let mut headless = app(folder, changes.plain);
+        let mut headless = app(folder, changes.plain, pace);
         let target = headless.render_target();
         let world = headless.app.world_mut();
         let root = spawn_scene(world);
@@ -336,12 +336,13 @@ impl Soak {
     }
 }
 
-/// An app that counts errors of the renderer.
-fn app(folder: &Path, plain: bool) -> Headless {
+/// An app that counts errors of the renderer. Systems run on several threads but at the shortest
+/// pace.
+fn app(folder: &Path, plain: bool, pace: Pace) -> Headless {
     let options = HeadlessOptions {
         size: SIZES[0],
         assets: folder.display().to_string(),
-        parallel_systems: true,
+        parallel_systems: pace.frames < Pace::SHORTEST.frames,
         ..default()
     };
     let mut headless = if plain {

@@ -230,7 +230,7 @@ pub(in crate::objects) fn count_ids(
         return;
     }
     // Meshes whose pipelines compile have no ids yet. Without a mesh, the depth may be old.
-    let phase = phases.0.get(&extracted.retained_view_entity);
+    let phase = phases.views.get(&extracted.retained_view_entity);
     let items = phase.into_iter().flat_map(|phase| &phase.items);
     let mut bins = items
         .map(|item| item.bin)

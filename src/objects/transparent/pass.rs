@@ -173,7 +173,7 @@ pub(in crate::objects) fn draw_transparent_depth(
 ) {
     let entity = view.entity();
     let ((camera, extracted, resolution, wanted), textures, own) = view.into_inner();
-    let phase = phases.0.get(&extracted.retained_view_entity);
+    let phase = phases.views.get(&extracted.retained_view_entity);
     let recorded = Targets::new((textures, own), &binder).and_then(|targets| {
         let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
         let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);

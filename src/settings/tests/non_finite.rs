@@ -12,10 +12,10 @@ use bevy::reflect::{
 
 use crate::settings::FieldRange;
 
-/// How many inputs are tried: the variable `FUZZ_CASES`, else 20000.
+/// How many inputs are tried: the variable `FUZZ_CASES`, else 5000.
 pub(crate) fn cases() -> usize {
     let given = std::env::var("FUZZ_CASES").ok();
-    given.and_then(|text| text.parse().ok()).unwrap_or(20_000)
+    given.and_then(|text| text.parse().ok()).unwrap_or(5000)
 }
 
 /// What `f` makes of an input. Panics if that takes a second or longer.

@@ -1,10 +1,14 @@
 //! Effects of a game: broken ones, and what effects may read.
 
 use bevy_comics::effect::NoUniform;
+use bevy_comics_testkit::pool::Pool;
 use serde::{Deserialize, Serialize};
 
 use super::*;
-use crate::prelude::*;
+use crate::{
+    prelude::*,
+    small::{draw_once, start},
+};
 
 /// An effect of a game without settings: one of [`KINDS`].
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -111,14 +115,28 @@ type Nameless = Probe<1>;
 type Reader = Probe<2>;
 type Tracer = Probe<3>;
 
-fn small_with<E: Effect>(msaa: Msaa) -> Small {
-    Small::with_plugins(options(size()), msaa, EffectPlugin::<E>::default())
+/// Apps with these effects. A broken one that no camera has changes nothing.
+static POOL: Pool = Pool::new(
+    |options| {
+        let effects = (
+            EffectPlugin::<Nonsense>::default(),
+            EffectPlugin::<Nameless>::default(),
+            EffectPlugin::<Reader>::default(),
+            EffectPlugin::<Tracer>::default(),
+        );
+        start(options, effects)
+    },
+    draw_once,
+);
+
+fn small_with_effects(msaa: Msaa) -> Small {
+    Small::of(POOL.take(options(size())), msaa)
 }
 
 /// The original picture is shown, the diagnostics name the effect, and other
 /// effects are drawn once it is removed.
 fn passes_through<E: Effect>() {
-    let mut small = small_with::<E>(Msaa::Off);
+    let mut small = small_with_effects(Msaa::Off);
     small.settle();
     let bare = small.picture();
     small.insert((E::default(), Colorization::SEPIA)).settle();
@@ -147,7 +165,7 @@ fn a_broken_effect_is_named_and_the_picture_passes_through() {
 #[test]
 fn an_effect_reads_normals_and_depth() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = small_with::<Reader>(msaa);
+        let mut small = small_with_effects(msaa);
         small.insert(Reader::default()).settle();
         assert!(small.ran(ComicsStage::of::<Reader>()), "{msaa:?}");
         // It does not read the range.
@@ -180,7 +198,7 @@ fn an_effect_reads_normals_and_depth() {
 /// left out where no effect requests any.
 #[test]
 fn an_effect_reads_lines_where_there_are_any() {
-    let mut small = small_with::<Tracer>(Msaa::Off);
+    let mut small = small_with_effects(Msaa::Off);
     small.insert(Tracer::default()).settle();
     let found = outcome(&small, small.camera, ComicsStage::of::<Tracer>());
     let missing = StageOutcome::Skipped(SkipReason::NoSuchLines);

@@ -25,9 +25,21 @@ fn borders(size: i64, value: impl Fn(f64, f64) -> i64) -> HashSet<Place> {
 /// squares.
 #[test]
 fn fields_of_parallel_lines_have_their_density() {
+    assert_density(&[3, 8], &[0, 1, 3, 6, 8, 11]);
+}
+
+#[test]
+#[ignore = "long: every turn"]
+fn fields_of_parallel_lines_in_every_turn_have_their_density() {
+    let turns: Vec<i32> = (0..12).collect();
+    assert_density(&[3, 5, 8], &turns);
+}
+
+/// `turns`: by 15 degrees.
+fn assert_density(spacings: &[i32], turns: &[i32]) {
     const SIZE: i64 = 128;
-    for spacing in [3, 5, 8] {
-        for turn in 0..12 {
+    for &spacing in spacings {
+        for &turn in turns {
             let (sin, cos) = (f64::from(turn) * 15.0).to_radians().sin_cos();
             let places = (0..spacing).map(|shift| {
                 // Away from the centres of pixels.
@@ -71,9 +83,21 @@ const SHAPES: [Shape; 8] = [
 /// lie between the squares.
 #[test]
 fn lone_lines_and_few_that_meet_keep_their_width() {
+    assert_width_is_kept(2);
+}
+
+#[test]
+#[ignore = "long: every shape in four places"]
+fn lone_lines_and_few_that_meet_keep_their_width_everywhere() {
+    assert_width_is_kept(1);
+}
+
+/// `step`: of the places of each shape, one in so many.
+fn assert_width_is_kept(step: usize) {
     const SIZE: i64 = 288;
-    for (name, shape) in SHAPES {
-        for shift in [[0.21, 0.1], [3.21, 5.1], [-6.8, 12.1], [14.2, -25.9]] {
+    const SHIFTS: [[f64; 2]; 4] = [[0.21, 0.1], [3.21, 5.1], [-6.8, 12.1], [14.2, -25.9]];
+    for (i, (name, shape)) in SHAPES.into_iter().enumerate() {
+        for shift in SHIFTS.into_iter().skip(i % step).step_by(step) {
             let lines = borders(SIZE, |x, y| shape(x - shift[0], y - shift[1]));
             let densities = Densities::new(&lines, [SIZE; 2]);
             for width in [1.0, 2.0, 4.0, 8.0, 16.0] {

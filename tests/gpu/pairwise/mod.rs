@@ -26,6 +26,7 @@ const TESTS: usize = 3;
 struct Bench {
     forward: Small,
     deferred: Option<Small>,
+    scales_up: bool,
     bases: HashMap<(View, usize, UVec2), Base>,
 }
 
@@ -49,10 +50,12 @@ fn mask(small: &Small, row: &Row, rect: URect) -> Option<Mask> {
 }
 
 impl Bench {
-    fn new() -> Self {
+    /// Views with a small main pass need apps that scale up.
+    fn new(scales_up: bool) -> Self {
         Self {
-            forward: stage::app(false),
+            forward: stage::app(false, scales_up),
             deferred: None,
+            scales_up,
             bases: HashMap::new(),
         }
     }
@@ -87,7 +90,8 @@ impl Bench {
         let (what, style) = (format!("{name}, {row:?}"), style());
         let rect = stage::rect(row.area, SIZE);
         let small = if row.deferred {
-            self.deferred.get_or_insert_with(|| stage::app(true))
+            let new = || stage::app(true, self.scales_up);
+            self.deferred.get_or_insert_with(new)
         } else {
             &mut self.forward
         };
@@ -120,7 +124,7 @@ impl Bench {
 
 fn check_rows(test: usize) {
     let samples = headless::adapter().expect("an adapter").samples;
-    let mut bench = Bench::new();
+    let mut bench = Bench::new(true);
     // Rows of a group have a base in common.
     let rows = rows(&samples).into_iter();
     for row in rows.filter(|row| row.effects % TESTS == test) {
@@ -150,7 +154,7 @@ fn pairs_are_drawn_as_on_a_plain_camera_3() {
 #[test]
 fn a_multisampled_viewport_is_drawn_as_on_a_plain_camera() {
     let effects = GROUPS.iter().position(|(name, _)| *name == "sketch");
-    Bench::new().check(&Row {
+    Bench::new(false).check(&Row {
         samples: 4,
         hdr: true,
         view: View::Perspective,

@@ -81,9 +81,14 @@ fn upscale(
     blitter.copy(device, encoder, &corner, target.main_texture_view());
 }
 
-/// An app with the scene, whose opaque standard materials are drawn by one method.
-pub fn app(deferred: bool) -> Small {
-    let mut small = Small::with_plugins(options(SIZE), Msaa::Off, Upscaler);
+/// An app with the scene, whose opaque standard materials are drawn by one method. For views with a
+/// small main pass it has to scale up.
+pub fn app(deferred: bool, scales_up: bool) -> Small {
+    let mut small = if scales_up {
+        Small::with_plugins(options(SIZE), Msaa::Off, Upscaler)
+    } else {
+        Small::new(SIZE, Msaa::Off)
+    };
     small.clear();
     let [red, green, blue] = OUTSIDE.map(|code| f32::from(code) / 255.0);
     let world = small.world();
@@ -239,13 +244,13 @@ pub fn shoot(small: &mut Small, row: &Row, size: UVec2, style: Option<&ComicStyl
     if small.headless.options.size != size {
         small.headless.resize(size, 1.0);
     }
-    let half = (row.area == Area::SmallMainPass).then_some(size / 2);
-    override_main_pass(small, half);
     let target = small.headless.render_target();
     let old = small.camera;
     let world = small.world();
     world.despawn(old);
     small.camera = spawn_camera(world, row, target);
+    let half = (row.area == Area::SmallMainPass).then_some(size / 2);
+    override_main_pass(small, half);
     match style {
         Some(style) => small.style(style),
         None => {

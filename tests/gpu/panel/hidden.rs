@@ -14,6 +14,7 @@ use bevy::{
         keyboard::{Key, KeyboardInput},
         mouse::MouseButtonInput,
     },
+    light::DirectionalLightShadowMap,
     time::TimeUpdateStrategy,
     window::{CursorMoved, PrimaryWindow, Window, WindowRef, WindowResolution},
 };
@@ -81,13 +82,22 @@ impl HiddenWindow {
             Drawn::Picture(size) => (size, 1.0),
             Drawn::Window(_) => (size, scale as f32),
         };
+        let is_in_window = matches!(shown.drawn, Drawn::Window(_));
         let options = HeadlessOptions {
-            size: picture.into(),
+            // The first frames are not looked at.
+            size: if is_in_window {
+                UVec2::splat(16)
+            } else {
+                picture.into()
+            },
             scale_factor,
             ..default()
         };
-        let plugins = (ComicsPlugin, inspector);
+        let plugins = (ComicsPlugin, inspector, small_shadow_maps);
         let mut studio = Studio::with_plugins(shown.scene, options, Msaa::Off, plugins);
+        if is_in_window {
+            studio.headless.resize(picture.into(), scale_factor);
+        }
         studio
             .headless
             .app
@@ -175,6 +185,11 @@ impl Drop for HiddenWindow {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// No test looks at shadows.
+fn small_shadow_maps(app: &mut App) {
+    app.insert_resource(DirectionalLightShadowMap { size: 256 });
 }
 
 /// The key with a name of X: what it is on the keyboard, and what it means.

@@ -13,8 +13,10 @@ const FUSED: &str = "fused/fused.wgsl";
 const ALWAYS_SET: [(&str, &str); 1] = [("SAMPLES", "`wgsl::compose` sets it")];
 
 /// The names of all definitions that each entry point is composed with, by file.
-fn entries() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
-    let mut entries = BTreeMap::<_, BTreeSet<_>>::new();
+type Entries = BTreeMap<&'static str, BTreeSet<&'static str>>;
+
+fn entries() -> Entries {
+    let mut entries = Entries::new();
     let mut add = |file: &'static str, definitions: &Definitions| {
         let names = definitions.iter().map(|(name, _)| *name);
         entries.entry(file).or_default().extend(names);
@@ -42,8 +44,13 @@ fn source(file: &File) -> String {
 }
 
 #[test]
-fn every_entry_point_is_composed() {
+fn every_entry_point_is_composed_and_every_definition_that_a_file_asks_for_is_set() {
     let (files, entries) = (files(), entries());
+    assert_all_composed(&files, &entries);
+    assert_all_set(&files, entries);
+}
+
+fn assert_all_composed(files: &[File], entries: &Entries) {
     for file in files.iter().filter(|file| has_entry_point(&file.text)) {
         let path = file.path.as_str();
         assert!(entries.contains_key(path), "no test composes {path}");
@@ -57,20 +64,18 @@ fn every_entry_point_is_composed() {
     }
 }
 
-#[test]
-fn every_definition_that_a_file_asks_for_is_set() {
-    let files = files();
+fn assert_all_set(files: &[File], entries: Entries) {
     let mut set = BTreeMap::<&str, BTreeSet<&str>>::new();
-    for (path, names) in entries() {
+    for (path, names) in entries {
         let entry = files.iter().find(|file| file.path == path);
         let entry = entry.unwrap_or_else(|| panic!("{path} does not exist"));
-        for file in [entry].into_iter().chain(reached(&files, &source(entry))) {
+        for file in [entry].into_iter().chain(reached(files, &source(entry))) {
             set.entry(&file.path).or_default().extend(&names);
         }
     }
     let none = BTreeSet::new();
     let mut missing = Vec::new();
-    for file in &files {
+    for file in files {
         let path = file.path.as_str();
         let set = set.get(path).unwrap_or(&none);
         let asked = definitions(&source(file));

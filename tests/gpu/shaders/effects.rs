@@ -91,14 +91,15 @@ fn modes(effect: &'static EffectType) -> Modes {
     let views = views();
     let (mut seen, mut modes) = (BTreeSet::new(), Vec::new());
     for settings in settings(effect) {
-        // Whether or not some object has an anchor, and the app a `WorldOrigin`.
-        for (view, missing) in views
-            .iter()
-            .flat_map(|view| MISSING.map(|needs| (view, needs)))
-        {
-            let asked = asked(settings.as_ref(), view, missing);
-            if seen.insert(asked.clone()) {
-                modes.push(asked.into_iter().collect());
+        for view in &views {
+            let variants = variants(settings.as_ref(), view);
+            // Whether or not some object has an anchor, and the app a `WorldOrigin`.
+            for missing in MISSING {
+                let mut asked = variants.clone();
+                asked.extend(needs(settings.as_ref(), missing));
+                if seen.insert(asked.clone()) {
+                    modes.push(asked.into_iter().collect());
+                }
             }
         }
     }
@@ -109,13 +110,9 @@ fn modes(effect: &'static EffectType) -> Modes {
     Modes { effect, modes }
 }
 
-/// What an effect asks for. Only the debug text of its variants shows them:
+/// The name of an effect, and its variants. Only their debug text shows them:
 /// `entries: [("", "MODE", Some(1)), ("", "FLAG", None)]`.
-fn asked(
-    effect: &dyn AnyEffect,
-    view: &EffectContext,
-    missing: Needs,
-) -> BTreeSet<Definition<'static>> {
+fn variants(effect: &dyn AnyEffect, view: &EffectContext) -> BTreeSet<Definition<'static>> {
     let name = format!("EFFECT_{}", effect.effect_type().name.to_uppercase());
     let mut variants = Variants::default();
     effect.any_variants(view, &mut variants);
@@ -130,16 +127,19 @@ fn asked(
     };
     let text = format!("{variants:?}");
     let mut all: BTreeSet<_> = text.split("(\"\", \"").skip(1).map(entry).collect();
+    all.insert(flag(name));
+    all
+}
+
+/// The definitions of what an effect needs.
+fn needs(effect: &dyn AnyEffect, missing: Needs) -> Definitions {
     let mut needs = effect.any_needs() - missing;
     // Of both, the means count.
     if needs.contains(Needs::BOX_STATISTICS) {
         needs.remove(Needs::AUX_SCALAR);
     }
-    for (_, names) in NEEDS.iter().filter(|(need, _)| needs.contains(*need)) {
-        all.extend(flags(names));
-    }
-    all.insert(flag(name));
-    all
+    let needed = NEEDS.iter().filter(|(need, _)| needs.contains(*need));
+    needed.flat_map(|(_, names)| flags(names)).collect()
 }
 
 /// Perspective and parallel views at several scales, on a smooth and on a rough sheet.

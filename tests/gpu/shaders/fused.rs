@@ -10,7 +10,7 @@ use super::{
 };
 use crate::prelude::*;
 
-/// How many combinations of effects are composed; a quick test composes every 20th.
+/// How many combinations of effects are composed; a quick test composes every 50th.
 const COMBINATIONS: usize = 1000;
 
 /// The definitions that the plugin sets for a pass. Those about depth are left out where nothing
@@ -180,7 +180,7 @@ fn every_mode_of_every_effect_composes_and_validates() {
 
 #[test]
 fn effects_compose_and_validate_together() {
-    let some: Vec<Definitions> = combinations().into_iter().step_by(20).collect();
+    let some: Vec<Definitions> = combinations().into_iter().step_by(50).collect();
     check(&some);
 }
 
@@ -236,7 +236,15 @@ fn every_part_and_pass_of_a_plan_composes_and_validates() {
     check(&parts::variants());
 }
 
+/// Each view with some effects and in some forms, of which there are 3 and 8.
 #[test]
+fn debug_views_compose_and_validate() {
+    let some: Vec<Definitions> = debug_views().into_iter().step_by(5).collect();
+    check(&some);
+}
+
+#[test]
+#[ignore = "long: every form; quick test shaders::fused::debug_views_compose_and_validate"]
 fn every_debug_view_composes_and_validates() {
     check(&debug_views());
 }

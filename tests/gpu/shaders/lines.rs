@@ -294,6 +294,10 @@ fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
 #[test]
 fn passes_that_find_lines_compose_and_validate() {
     check(&finding());
+}
+
+#[test]
+fn the_search_for_blocks_composes_and_validates() {
     check(&walking());
 }
 

@@ -10,7 +10,9 @@ use bevy::{
     prelude::*,
 };
 
-use super::{environment, framing::Framing};
+use bevy_comics_testkit::scenes::environment;
+
+use super::framing::Framing;
 
 /// A directional light of the studio.
 struct Lamp {

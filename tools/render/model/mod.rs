@@ -1,7 +1,6 @@
 //! glTF models: loaded, framed and lit.
 
 mod document;
-mod environment;
 pub mod framing;
 mod lighting;
 mod textures;
@@ -21,7 +20,7 @@ use bevy::{
 
 use bevy_comics_testkit::{
     headless::Headless,
-    scenes::{ScenePart, Vantage},
+    scenes::{ScenePart, Vantage, environment},
 };
 use document::Document;
 use framing::{AffectedArea, FOV};

@@ -2,6 +2,7 @@
 //! camera.
 
 pub mod buildings;
+pub mod environment;
 pub mod figure;
 pub mod hall;
 pub mod lights;

@@ -6,7 +6,7 @@
 
 use bevy::{light::EnvironmentMapLight, prelude::*};
 
-use bevy_comics_testkit::scenes::sky::{cube_map, direction_of_texel};
+use super::sky::{cube_map, direction_of_texel};
 
 /// Texels along the side of a face of the specular map.
 const SIDE: u32 = 64;
