@@ -9,8 +9,8 @@ use std::{any::TypeId, num::NonZero};
 
 use bevy::{
     ecs::system::{Res, ResMut, StaticSystemParam, SystemParam, SystemParamItem},
-    platform::time::Instant,
     pbr::{MeshInputUniform, MeshPipeline, MeshUniform, PreprocessPipelines, RenderMeshInstances},
+    platform::time::Instant,
     render::{
         batching::{
             GetBatchData, GetFullBatchData,

@@ -101,6 +101,11 @@ fn check(msaa: Msaa, looks: Range<usize>, styles: usize) {
 
 /// A look with strokes of a map.
 #[test]
+fn everything_is_drawn_within_the_default_limits() {
+    check(Msaa::Off, 2..3, 1);
+}
+
+#[test]
 fn everything_is_drawn_within_the_default_limits_with_four_samples() {
     check(Msaa::Sample4, 2..3, 1);
 }

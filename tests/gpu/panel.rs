@@ -437,8 +437,6 @@ fn the_keyboard_alone_reaches_other_effects_and_pages() {
     let window = hidden();
     open(&window);
     leaf_by_keys(&window);
-    window.click("view.DepthMap");
-    until_map(&window);
     close(&window);
 }
 
@@ -449,9 +447,6 @@ fn the_keyboard_alone_tunes_a_style_in_a_window() {
     open(&window);
     tune_by_keys(&window);
     leaf_by_keys(&window);
-    tab_to(&window, "view.DepthMap");
-    window.key("space");
-    until_map(&window);
     close(&window);
 }
 
@@ -493,6 +488,9 @@ fn leaf_by_keys(window: &impl Session) {
     window.until("the views", |state| {
         state["widgets"]["view.DepthMap"].is_array()
     });
+    tab_to(window, "view.DepthMap");
+    window.key("space");
+    until_map(window);
 }
 
 /// Two cameras in a window with scale factor 1.2.

@@ -179,7 +179,7 @@ fn goes_with_the_scene(world: &World, resource: ComponentId) -> bool {
     const CONTENTS: [&str; 6] = [
         "bevy_asset::",
         "bevy_ecs::message::",
-        "bevy_comics::animation::",
+        "bevy_comics::animation::flashes::",
         "bevy_comics::depth::",
         "bevy_comics::objects::",
         "bevy_comics::toon::",
@@ -202,6 +202,8 @@ fn restore(world: &mut World) {
     world.insert_resource(DefaultOpaqueRendererMethod::default());
     world.insert_resource(ObjectIdDepthTest::default());
     world.insert_resource(ReduceFlashing::default());
+    // Known to an app from the start, so that one in which a test inserts it is as it was.
+    world.insert_resource(WorldOrigin::default());
     world.remove_resource::<WorldOrigin>();
 }
 
