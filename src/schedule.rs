@@ -41,3 +41,8 @@ pub(crate) enum PrepareComics {
 /// The systems that put the effects of impacts on cameras, before cameras are planned.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RunImpacts;
+
+/// The system that divides meshes into sections, after it is known whether a camera asks for them.
+#[cfg(feature = "objects")]
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DivideMeshes;

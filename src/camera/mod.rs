@@ -15,7 +15,10 @@ mod warnings;
 use std::sync::Arc;
 
 #[cfg(feature = "objects")]
-use bevy::ecs::{change_detection::DetectChangesMut, system::ResMut};
+use bevy::{
+    app::PostUpdate,
+    ecs::{change_detection::DetectChangesMut, system::ResMut},
+};
 use bevy::{
     app::{App, Last, Plugin},
     camera::Camera3d,
@@ -35,8 +38,6 @@ use bevy::{
     window::PrimaryWindow,
 };
 
-#[cfg(feature = "objects")]
-use crate::objects::EdgesPlanned;
 use crate::{
     animation::Impacts,
     depth::MaterialsReadRange,
@@ -46,6 +47,8 @@ use crate::{
     origin::WorldOrigin,
     schedule::{ComicsSystems, RunImpacts},
 };
+#[cfg(feature = "objects")]
+use crate::{lines::Outlines, objects::AllMeshes, schedule::DivideMeshes};
 pub use light::KeyLight;
 pub use overlay::{ComicOverlay, overlay_camera};
 use prepasses::{give_up_claims, read_drawn_depth, request_prepasses};
@@ -87,7 +90,7 @@ impl Plugin for CameraPlugin {
                 ),
             );
         #[cfg(feature = "objects")]
-        app.add_systems(Last, note_edges.after(ComicsSystems::Plan));
+        app.add_systems(PostUpdate, ask_for_edges.before(DivideMeshes));
     }
 }
 
@@ -102,13 +105,19 @@ impl CameraPlugin {
     }
 }
 
-/// Notes whether some lines have creases at the edges of all meshes.
+/// Notes whether some camera asks for the edges of all meshes: by its `Outlines`, even while they are
+/// faded out, or by another effect that had lines in the last frame.
 #[cfg(feature = "objects")]
-fn note_edges(plans: Query<&CameraPlan>, mut edges: ResMut<EdgesPlanned>) {
-    let lines = plans.iter().filter_map(|camera| camera.plan.lines);
-    edges.set_if_neq(EdgesPlanned(
-        lines.into_iter().any(|lines| lines.divides_meshes()),
-    ));
+fn ask_for_edges(
+    cameras: Query<(Option<&Outlines>, Option<&CameraPlan>), With<Camera3d>>,
+    mut all: ResMut<AllMeshes>,
+) {
+    let asks = |(outlines, planned): (Option<&Outlines>, Option<&CameraPlan>)| {
+        let drawn = planned.and_then(|camera| camera.plan.lines);
+        outlines.is_some_and(Outlines::divides_meshes)
+            || drawn.is_some_and(|lines| lines.divides_meshes())
+    };
+    all.set_if_neq(AllMeshes(cameras.iter().any(asks)));
 }
 
 fn plan_cameras(

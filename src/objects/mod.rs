@@ -100,7 +100,7 @@ pub(crate) use object_depths::{
     OBJECT_DEPTHS_BINDING, ObjectDepthRequest, ObjectDepths, ObjectEye, object_depths_entry,
 };
 #[cfg(feature = "objects")]
-pub(crate) use table::EdgesPlanned;
+pub(crate) use sections::AllMeshes;
 pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};

@@ -75,12 +75,6 @@ pub(crate) struct ObjectStyles {
     pub fades: bool,
 }
 
-/// Whether the lines of some camera, as planned in the last frame, have creases at the edges of all
-/// meshes.
-#[cfg(feature = "objects")]
-#[derive(Resource, Default, PartialEq)]
-pub(crate) struct EdgesPlanned(pub bool);
-
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
 #[cfg(feature = "objects")]
 pub(crate) const HIDDEN_ONLY: u32 = 16;

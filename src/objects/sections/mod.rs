@@ -6,9 +6,8 @@ mod table;
 use bevy::{
     app::{App, PostUpdate},
     asset::{AssetEvent, AssetEventSystems, AssetId, Assets},
-    camera::Camera3d,
     ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
+        change_detection::DetectChanges,
         component::Component,
         entity::{Entity, EntityHashSet},
         lifecycle::RemovedComponents,
@@ -35,10 +34,10 @@ use super::{
     components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
     inherit::{Inherit, Inherited, watch},
-    table::{EdgesPlanned, ObjectStyles},
+    table::ObjectStyles,
 };
 use crate::{
-    lines::Outlines,
+    schedule::DivideMeshes,
     settings::{FieldRange, clamp_or_default},
 };
 
@@ -172,20 +171,9 @@ pub(super) struct SectionTasks {
     supported: bool,
 }
 
-/// Whether a camera asks for the edges of all meshes, by its `Outlines` or by another effect that
-/// has lines.
+/// Whether a camera asks for the edges of all meshes.
 #[derive(Resource, Default, PartialEq)]
-pub(super) struct AllMeshes(bool);
-
-/// Notes it. A style that is faded out for a while still asks.
-fn ask_for_edges(
-    cameras: Query<&Outlines, With<Camera3d>>,
-    planned: Res<EdgesPlanned>,
-    mut all: ResMut<AllMeshes>,
-) {
-    let asked = planned.0 || cameras.iter().any(Outlines::divides_meshes);
-    all.set_if_neq(AllMeshes(asked));
-}
+pub(crate) struct AllMeshes(pub bool);
 
 /// The sections that a mesh entity has: their key, and if it shares its id with other
 /// meshes, by how much its numbers are shifted.
@@ -410,13 +398,12 @@ pub(super) fn build(app: &mut App) {
         .init_resource::<SectionTasks>()
         .init_resource::<SectionTables>()
         .init_resource::<MeshTasks>()
-        .init_resource::<AllMeshes>()
-        .init_resource::<EdgesPlanned>();
+        .init_resource::<AllMeshes>();
     watch::<MeshSections>(app);
     app.add_systems(
         PostUpdate,
-        (ask_for_edges, divide_meshes)
-            .chain()
+        divide_meshes
+            .in_set(DivideMeshes)
             .after(AssetEventSystems)
             .after(assign_object_styles)
             .after(update_object_groups)
