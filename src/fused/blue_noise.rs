@@ -1,9 +1,4 @@
 //! A tile of blue noise: the order in which grains are printed as a tone grows.
-//!
-//! The tile is made once, in some milliseconds, when an effect that reads it is first
-//! drawn; it is the same every time.
-
-mod void_and_cluster;
 
 use bevy::{
     ecs::resource::Resource,
@@ -17,7 +12,11 @@ use bevy::{
 };
 
 use crate::gpu::texture;
-use void_and_cluster::{SIDE, classes};
+
+/// Grains across and down the tile.
+const SIDE: usize = 64;
+/// The rank of every grain in 256 classes, row by row, by void and cluster (Ulichney 1993).
+const CLASSES: &[u8; SIDE * SIDE] = include_bytes!("blue_noise.bin");
 
 /// The tile as a texture, once an effect has needed it.
 #[derive(Resource, Default)]
@@ -38,7 +37,7 @@ impl BlueNoise {
                     queue,
                     &described,
                     TextureDataOrder::default(),
-                    &around(&classes()),
+                    &around(CLASSES),
                 )
                 .create_view(&TextureViewDescriptor::default())
         });
@@ -72,15 +71,14 @@ mod tests {
 
     #[test]
     fn a_texel_has_what_a_pixel_shows_of_each_plate() {
-        let classes = classes();
-        let texels = around(&classes);
+        let texels = around(CLASSES);
         for (x, y) in [(0, 0), (5, 9), (63, 20), (17, 63), (63, 63)] {
             let texel = &texels[16 * (y * SIDE + x)..][..16];
             for (plate, found) in texel.chunks(4).enumerate() {
                 let of = |right: usize, down: usize| {
                     let column = (x + 19 * plate + right) % SIDE;
                     let row = (y + 37 * plate + down) % SIDE;
-                    classes[row * SIDE + column]
+                    CLASSES[row * SIDE + column]
                 };
                 assert_eq!(found, [of(0, 0), of(1, 0), of(0, 1), of(1, 1)], "{x}, {y}");
             }

@@ -34,8 +34,7 @@ pub mod strokes;
 pub mod studio;
 pub mod truth;
 pub mod validation;
-// The order of the crate's grains, included because it is private there.
-#[path = "../../../src/fused/blue_noise/void_and_cluster.rs"]
+#[cfg(test)]
 mod void_and_cluster;
 pub mod wgsl;
 pub mod work;

@@ -1,17 +1,14 @@
 //! How well screens print flat tones, gradients and rings. Computed with the shader's reference,
 //! which every pixel of a picture equals.
 
-use std::{f64::consts::TAU, sync::OnceLock};
+use std::f64::consts::TAU;
 
 use bevy::color::Color;
 use bevy_comics::{Halftone, effects::ScreenShape};
 
-use crate::{
-    reference::{
-        color::luminance,
-        halftone::{Plate, inked, plate_cover, plate_tones},
-    },
-    void_and_cluster,
+use crate::reference::{
+    color::luminance,
+    halftone::{Plate, inked, plate_cover, plate_tones},
 };
 
 /// All shapes.
@@ -30,12 +27,12 @@ pub const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
 /// Periods that are measured, in pixels.
 pub const PERIODS: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
 
-/// Thresholds of grains by column and row: those of the tile that the crate prints with.
+/// The tile of 64 x 64 grains that the crate prints with: the classes of their thresholds.
+pub(crate) const TILE: &[u8; 4096] = include_bytes!("../../../src/fused/blue_noise.bin");
+
+/// Thresholds of grains by column and row.
 pub fn tile(x: i64, y: i64) -> f64 {
-    static CLASSES: OnceLock<Vec<u8>> = OnceLock::new();
-    let classes = CLASSES.get_or_init(void_and_cluster::classes);
-    let side = void_and_cluster::SIDE as i64;
-    let class = classes[(y.rem_euclid(side) * side + x.rem_euclid(side)) as usize];
+    let class = TILE[(y.rem_euclid(64) * 64 + x.rem_euclid(64)) as usize];
     (f64::from(class) + 0.5) / 256.0
 }
 

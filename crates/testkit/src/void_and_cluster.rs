@@ -1,9 +1,10 @@
 //! The order of the grains of a tile by void and cluster (Ulichney 1993): grains are added where
-//! the others leave the largest gap. Needs nothing of the crate: the test kit compiles this file
-//! too, to measure what is printed with the same tile.
+//! the others leave the largest gap. It made `src/fused/blue_noise.bin`.
+
+use crate::screens::TILE;
 
 /// Grains across and down the tile.
-pub const SIDE: usize = 64;
+const SIDE: usize = 64;
 const GRAINS: usize = SIDE * SIDE;
 /// How far grains keep each other away: standard deviation of the Gaussian in grains, and
 /// where it is cut off.
@@ -11,7 +12,7 @@ const SIGMA: f32 = 1.9;
 const REACH: i32 = 9;
 
 /// The rank of every grain in 256 classes, row by row.
-pub fn classes() -> Vec<u8> {
+fn classes() -> Vec<u8> {
     let class = |rank: usize| (rank / (GRAINS / 256)) as u8;
     ranks().into_iter().map(class).collect()
 }
@@ -106,50 +107,39 @@ fn ranks() -> Vec<usize> {
     ranks
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+#[test]
+fn the_tile_of_the_crate_has_this_order() {
+    let mut sorted = ranks();
+    sorted.sort_unstable();
+    assert!(sorted.into_iter().eq(0..GRAINS));
+    assert_eq!(classes(), TILE);
+}
 
-    #[test]
-    fn every_rank_occurs_once_and_the_tile_is_the_same_every_time() {
-        let found = ranks();
-        let mut sorted = found.clone();
-        sorted.sort_unstable();
-        assert!(sorted.iter().copied().eq(0..GRAINS));
-        assert_eq!(found, ranks());
-        let mut counts = [0; 256];
-        for class in classes() {
-            counts[usize::from(class)] += 1;
-        }
-        assert_eq!(counts, [GRAINS / 256; 256]);
-    }
-
-    /// At every tone a, the grains of a square of n x n are nearly as many as the tone says:
-    /// they deviate by less than 0.4 of what random grains would, n sqrt(a (1 - a)). Squares
-    /// hold at least six grains or gaps: in smaller ones even a lattice deviates more (a
-    /// square lattice of 0.05 in squares of 8 x 8 by 0.6).
-    #[test]
-    fn grains_are_spread_evenly() {
-        let ranks = ranks();
-        for tone in [0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95] {
-            let printed = |x: usize, y: usize| {
-                let rank = ranks[(y % SIDE) * SIDE + x % SIDE];
-                f64::from(u8::from((rank as f64) < tone * GRAINS as f64))
-            };
-            let side = if (0.1..=0.9).contains(&tone) { 8 } else { 12 };
-            let area = (side * side) as f64;
-            let squares = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
-            let deviation = squares
-                .map(|(x, y)| {
-                    let count: f64 = (0..side * side)
-                        .map(|i| printed(x + i % side, y + i / side))
-                        .sum();
-                    (count - area * tone).powi(2)
-                })
-                .sum::<f64>();
-            let deviation = (deviation / GRAINS as f64).sqrt();
-            let random = (area * tone * (1.0 - tone)).sqrt();
-            assert!(deviation < 0.4 * random, "{tone}: {deviation}, {random}");
-        }
+/// At every tone a, the grains of a square of n x n are nearly as many as the tone says:
+/// they deviate by less than 0.4 of what random grains would, n sqrt(a (1 - a)). Squares
+/// hold at least six grains or gaps: in smaller ones even a lattice deviates more (a
+/// square lattice of 0.05 in squares of 8 x 8 by 0.6).
+#[test]
+fn grains_are_spread_evenly() {
+    let ranks = ranks();
+    for tone in [0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95] {
+        let printed = |x: usize, y: usize| {
+            let rank = ranks[(y % SIDE) * SIDE + x % SIDE];
+            f64::from(u8::from((rank as f64) < tone * GRAINS as f64))
+        };
+        let side = if (0.1..=0.9).contains(&tone) { 8 } else { 12 };
+        let area = (side * side) as f64;
+        let squares = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
+        let deviation = squares
+            .map(|(x, y)| {
+                let count: f64 = (0..side * side)
+                    .map(|i| printed(x + i % side, y + i / side))
+                    .sum();
+                (count - area * tone).powi(2)
+            })
+            .sum::<f64>();
+        let deviation = (deviation / GRAINS as f64).sqrt();
+        let random = (area * tone * (1.0 - tone)).sqrt();
+        assert!(deviation < 0.4 * random, "{tone}: {deviation}, {random}");
     }
 }
