@@ -37,7 +37,7 @@ pub struct TwoTone {
     pub light: Color,
     /// Whether the two colours are exchanged. Default: `false`.
     pub invert: bool,
-    /// Width of the edge between the tones in physical pixels. Range 0 to 16, default 1.5.
+    /// Width of the edge between the tones in logical pixels. Range 0 to 16, default 1.5.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub softness: f32,
     /// How much of the two tones is mixed into the picture. Range 0 (the effect is left out)
@@ -95,7 +95,7 @@ impl Effect for TwoTone {
         Needs::LIGHTNESS_CHANGE
     }
 
-    fn uniform(&self, _: &EffectContext) -> TwoToneUniform {
+    fn uniform(&self, view: &EffectContext) -> TwoToneUniform {
         let (dark, light) = if self.invert {
             (self.light, self.dark)
         } else {
@@ -105,7 +105,7 @@ impl Effect for TwoTone {
             dark: linear_rgb(dark),
             threshold: self.threshold,
             light: linear_rgb(light),
-            softness: self.softness,
+            softness: self.softness * view.scale_factor,
             amount: self.amount,
         }
     }
@@ -119,4 +119,13 @@ pub struct TwoToneUniform {
     light: Vec3,
     softness: f32,
     amount: f32,
+}
+
+#[test]
+fn the_edge_is_in_logical_pixels() {
+    let view = EffectContext {
+        scale_factor: 2.0,
+        ..EffectContext::default()
+    };
+    assert_eq!(TwoTone::default().uniform(&view).softness, 3.0);
 }
