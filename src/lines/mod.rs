@@ -3,8 +3,8 @@
 //! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
 //! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
 //! along weak ones, `join.wgsl` joins them over faces that are thinner than a pixel, `bridge.wgsl`
-//! closes gaps, `density.wgsl` measures how densely they lie, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
-//! `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
+//! closes gaps, `density.wgsl` measures how densely they lie, `corners.wgsl` notes which cracks meet,
+//! and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
 mod cracks;
 mod draw;
@@ -141,6 +141,7 @@ fn load_shaders(app: &mut App) {
     embedded_asset!(app, "draw/ends.wgsl");
     embedded_asset!(app, "draw/strokes.wgsl");
     embedded_asset!(app, "link/density.wgsl");
+    embedded_asset!(app, "link/corners.wgsl");
     embedded_asset!(app, "link/settle.wgsl");
     embedded_asset!(app, "tiles/tiles.wgsl");
     embedded_asset!(app, "tiles/tile.wgsl");

@@ -77,6 +77,8 @@ pub(crate) struct CellPasses {
     pub bridge: Option<CachedComputePipelineId>,
     /// Measures how densely lines lie: in small squares, and in large ones.
     pub measure: Option<[CachedComputePipelineId; 2]>,
+    /// Notes which cracks meet at corners, before lines are followed.
+    pub corners: Option<CachedComputePipelineId>,
     /// Leaves out what is not part of a line, and makes lines smooth.
     pub settle: Option<CachedComputePipelineId>,
     /// Extends loose ends.
@@ -102,6 +104,7 @@ impl CellPasses {
             persist: with(LineKey::PERSISTS, SearchPass::Persist(key.for_persist())),
             bridge: with(LineKey::BRIDGED, SearchPass::Bridge),
             measure,
+            corners: with(LineKey::COMPLETED, SearchPass::Corners),
             settle: with(LineKey::COMPLETED, SearchPass::Settle(key.for_settle())),
             ends: with(LineKey::OVERSHOOTS, SearchPass::Ends(key.for_ends())),
         }
@@ -109,8 +112,9 @@ impl CellPasses {
 
     pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
         let pairs = [self.link, self.measure].into_iter().flatten().flatten();
-        let rest = [self.join, self.persist, self.bridge, self.settle, self.ends];
-        let rest = rest.into_iter().flatten();
+        let rest = [self.join, self.persist, self.bridge];
+        let last = [self.corners, self.settle, self.ends];
+        let rest = rest.into_iter().chain(last).flatten();
         [self.find].into_iter().chain(pairs).chain(rest)
     }
 }

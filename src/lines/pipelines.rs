@@ -34,6 +34,7 @@ pub(crate) struct LineShaders {
     ends: Handle<Shader>,
     strokes: Handle<Shader>,
     density: Handle<Shader>,
+    corners: Handle<Shader>,
     settle: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
@@ -56,6 +57,7 @@ impl LineShaders {
             ends: load_embedded_asset!(assets, "draw/ends.wgsl"),
             strokes: load_embedded_asset!(assets, "draw/strokes.wgsl"),
             density: load_embedded_asset!(assets, "link/density.wgsl"),
+            corners: load_embedded_asset!(assets, "link/corners.wgsl"),
             settle: load_embedded_asset!(assets, "link/settle.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles/tiles.wgsl"),
             tile: tile_shader(assets),
@@ -86,6 +88,8 @@ pub(crate) enum SearchPass {
     Bridge,
     /// Measures how densely lines lie in small squares, or in large ones.
     Measure { coarse: bool },
+    /// Notes which cracks meet at corners.
+    Corners,
     /// Completes the cracks in the cells.
     Settle(LineKey),
     /// Finds the loose ends of lines.
@@ -106,6 +110,7 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
             SearchPass::Bridge => ("comics_bridge_lines", "bridge", &self.bridge),
             SearchPass::Measure { .. } => ("comics_measure_lines", "measure", &self.density),
+            SearchPass::Corners => ("comics_line_corners", "corners", &self.corners),
             SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
         };
         let (layout, shader_defs) = match pass {
@@ -124,6 +129,7 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Persist(key) => (key.persist_layout(), key.defs()),
             SearchPass::Ends(key) => (LineKey::ends_layout(), key.defs()),
             SearchPass::Bridge => (LineKey::bridge_layout(), vec![]),
+            SearchPass::Corners => (LineKey::corners_layout(), vec![]),
             SearchPass::Settle(key) => (key.settle_layout(), key.defs()),
         };
         ComputePipelineDescriptor {

@@ -98,7 +98,7 @@ fn outlines_in_apps_of_their_own_dispatch_no_more_kernels_than_they_need() {
     assert_kernels(&[(Outlines::default(), COMPLETING)]);
 }
 
-const COMPLETING: &str = "link_lines join_lines measure_lines settle_lines";
+const COMPLETING: &str = "link_lines join_lines measure_lines line_corners settle_lines";
 const COLUMNS: &str = "line_columns";
 
 fn wide_along_cracks() -> Outlines {

@@ -99,7 +99,7 @@ fn completing(counted: &str, path: &str, text: &str) -> String {
         CELLS | LINK => text.to_owned(),
         SETTLE if counted == LINK => {
             let start = "    if cell.x < 0 {\n        return;\n    }\n";
-            let hand_on = "fill_cell(cell, row_window(line_pass.grid, 0, 0));";
+            let hand_on = "fill_cell(cell, cracks_from(line_pass.grid, vec3(0, 0, 1)));";
             let skip = format!("{start}    {hand_on}\n    if true {{ return; }}\n");
             swapped(text, start, &skip) + FILL_CELL
         }

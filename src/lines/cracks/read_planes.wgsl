@@ -5,7 +5,7 @@
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::planes::{
-    FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, across_words, column_word, row_word,
+    FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, across_words, column_word, corner_word, row_word,
 }
 
 @group(0) @binding(20) var<storage> planes: array<u32>;
@@ -15,9 +15,9 @@ fn load_column(g: Grid, plane: i32, x: i32, band: i32) -> u32 {
     return select(0u, planes[column_word(g, plane, select(0, x, inside), select(0, band, inside))], inside);
 }
 
-fn load_row(g: Grid, word: i32, y: i32) -> u32 {
-    let inside = word >= 0 && word < g.words.x && y >= 0 && y < g.rect.w;
-    return select(0u, planes[row_word(g, select(0, word, inside), select(0, y, inside))], inside);
+// The bit of a pixel.
+fn column_bit(g: Grid, plane: i32, x: i32, y: i32) -> u32 {
+    return (load_column(g, plane, x, y >> 5u) >> u32(y & 31)) & 1u;
 }
 
 // The rows y to y + 31 of a column.
@@ -47,8 +47,32 @@ fn inked_rows(g: Grid, x: i32, first: i32, last: i32) -> vec2<u32> {
 #endif
 }
 
-// The columns x to x + 31 of a row of LINKED_SOUTH.
-fn row_window(g: Grid, x: i32, y: i32) -> u32 {
-    let word = x >> 5u;
-    return across_words(load_row(g, word, y), load_row(g, word + 1, y), u32(x & 31));
+// A word of the cracks of lines in a row: of those to the south, 32 columns of the row `across`; of
+// those to the east, 32 rows of the column `across`.
+fn load_along(g: Grid, south: bool, word: i32, across: i32) -> u32 {
+    let size = select(vec2(g.words.y, g.rect.z), vec2(g.words.x, g.rect.w), south);
+    let inside = word >= 0 && word < size.x && across >= 0 && across < size.y;
+    let at = select(column_word(g, LINKED_EAST, across, word), row_word(g, word, across), south);
+    return select(0u, planes[select(0, at, inside)], inside);
+}
+
+// Whether a crack, see chain.wgsl, is part of a line: 1 or 0.
+fn crack_bit(g: Grid, crack: vec3<i32>) -> u32 {
+    let from = select(crack.yx, crack.xy, crack.z == 1);
+    return (load_along(g, crack.z == 1, from.x >> 5u, from.y) >> u32(from.x & 31)) & 1u;
+}
+
+// The same of the 32 cracks in a row that begin with a crack: bit 0 is that one.
+fn cracks_from(g: Grid, crack: vec3<i32>) -> u32 {
+    let south = crack.z == 1;
+    let from = select(crack.yx, crack.xy, south);
+    let word = from.x >> 5u;
+    return across_words(load_along(g, south, word, from.y), load_along(g, south, word + 1, from.y), u32(from.x & 31));
+}
+
+// Which of the four cracks at a corner are parts of lines: bit 0 and 1 above and below the
+// corner, bit 2 and 3 to the left and right of it.
+fn cracks_at(g: Grid, corner: vec2<i32>) -> u32 {
+    let eight = planes[corner_word(g, corner.x, corner.y >> 3u)];
+    return (eight >> (4u * u32(corner.y & 7))) & 15u;
 }

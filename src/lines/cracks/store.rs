@@ -43,6 +43,8 @@ const CRACKS: u64 = 8;
 const BENDS: u64 = 4;
 /// Bytes of a word of a plane.
 const WORD: u64 = 4;
+/// Corners of a column that share a word.
+const CORNER_ROWS: u32 = 8;
 
 /// Bytes of the largest buffer of a view's cracks.
 pub(crate) fn largest_buffer(rect: UVec4) -> u64 {
@@ -71,7 +73,7 @@ pub struct ViewCracks {
     /// lines, those that were found to the east and to the south, those to the east and to the
     /// south that only join lines, and silhouettes to the east and to the south. Of lines that
     /// are neither linked nor smooth nor weighted, only those that were found are stored: all of
-    /// them are parts of lines.
+    /// them are parts of lines. Behind the planes is what only the crate reads.
     pub planes: Buffer,
     /// For each pixel how the lines of its cracks leave them: the lower half of a word is
     /// that of the crack to the east. Bits 0 to 7: the offset across the crack in 256ths of a
@@ -87,8 +89,8 @@ pub(crate) struct CrackBuffers {
     /// other.
     planes: [Buffer; 2],
     bends: Option<Buffer>,
-    /// Bytes that are used of the planes.
-    used: u64,
+    /// Bytes of the planes, and of the corners behind them.
+    used: [u64; 2],
 }
 
 impl CrackBuffers {
@@ -98,7 +100,8 @@ impl CrackBuffers {
         let pixels = u64::from(rect.z) * u64::from(rect.w);
         let columns = u64::from(words.y) * u64::from(rect.z);
         let rows = u64::from(words.x) * u64::from(rect.w);
-        let used = WORD * (8 * columns + rows);
+        let corners = u64::from(rect.z + 1) * u64::from(rect.w / CORNER_ROWS + 1);
+        let used = [8 * columns + rows, corners].map(|words| WORD * words);
         let before = before.map(|b| (Some(b.words), Some(b.planes), b.bends));
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let take = |size: u64, label, old: Option<Buffer>| {
@@ -110,7 +113,7 @@ impl CrackBuffers {
         let old_planes = old_planes.map_or([None, None], |planes| planes.map(Some));
         Self {
             words: take(CRACKS * pixels, "comics_cracks", old_words),
-            planes: old_planes.map(|old| take(used, "comics_crack_planes", old)),
+            planes: old_planes.map(|old| take(used.iter().sum(), "comics_crack_planes", old)),
             bends: bends.then(|| take(BENDS * pixels, "comics_crack_bends", old_bends)),
             used,
         }
@@ -128,13 +131,19 @@ impl CrackBuffers {
 
     /// Removes all cracks.
     pub fn clear(&self, encoder: &mut CommandEncoder) {
-        encoder.clear_buffer(&self.planes[0], 0, Some(self.used));
+        encoder.clear_buffer(&self.planes[0], 0, Some(self.used[0]));
+    }
+
+    /// Removes all corners, after this number of copies of the planes.
+    pub fn clear_corners(&self, encoder: &mut CommandEncoder, copies: usize) {
+        let [planes, corners] = self.used;
+        encoder.clear_buffer(&self.planes[copies % 2], planes, Some(corners));
     }
 
     /// Copies the planes of a buffer to the other.
     pub fn copy_planes(&self, encoder: &mut CommandEncoder, from: usize) {
         let [from, to] = [from, 1 - from].map(|i| &self.planes[i]);
-        encoder.copy_buffer_to_buffer(from, 0, to, 0, self.used);
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, self.used[0]);
     }
 
     /// The bindings of `cells.wgsl`.

@@ -69,6 +69,10 @@ impl LineKey {
         in_cells("comics_bridge_lines", vec![], [20], [18, 21])
     }
 
+    pub fn corners_layout() -> BindGroupLayoutDescriptor {
+        in_cells("comics_line_corners", vec![], [], [21])
+    }
+
     pub fn measure_layout() -> BindGroupLayoutDescriptor {
         let planes = planes_entry(ShaderStages::COMPUTE);
         let [densities] = written_buffers([33]);

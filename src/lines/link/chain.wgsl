@@ -8,8 +8,7 @@
 
 #import bevy_comics::lines::bend::diagonal_bend
 #import bevy_comics::lines::edge::Grid
-#import bevy_comics::lines::planes::{LINKED_EAST, LINKED_SOUTH}
-#import bevy_comics::lines::read_planes::column_window
+#import bevy_comics::lines::read_planes::cracks_at
 
 // In place of a crack's side: no line, or several lines, go on at a corner.
 const END: i32 = -1;
@@ -31,16 +30,6 @@ fn along_crack(crack: vec3<i32>) -> vec2<f32> {
 
 fn crack_centre(crack: vec3<i32>) -> vec2<f32> {
     return 0.5 * vec2<f32>(first_corner(crack) + last_corner(crack));
-}
-
-// Which of the four cracks at a corner are parts of lines: bit 0 and 1 above and below the
-// corner, bit 2 and 3 to the left and right of it.
-fn cracks_at(g: Grid, corner: vec2<i32>) -> u32 {
-    let before = corner - 1;
-    let rows = column_window(g, LINKED_EAST, before.x, before.y) & 3u;
-    let left = column_window(g, LINKED_SOUTH, before.x, before.y) & 1u;
-    let right = column_window(g, LINKED_SOUTH, corner.x, before.y) & 1u;
-    return rows | (left << 2u) | (right << 3u);
 }
 
 // The number of a crack among those at one of its corners, and the crack of a number.

@@ -4,7 +4,7 @@
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::planes::{FOUND_EAST, FOUND_SOUTH}
-#import bevy_comics::lines::read_planes::column_window
+#import bevy_comics::lines::read_planes::{column_bit, column_window}
 
 // The cracks that are missing in gaps of at most `longest` cracks. `before` and `after`: the
 // cracks of lines one, two and three further back and on along the run.
@@ -34,7 +34,7 @@ fn source_of(g: Grid, crack: vec3<i32>) -> vec3<i32> {
     }
     var found = 0u;
     for (var i = 0; i < 7; i++) {
-        found |= (column_window(g, FOUND_SOUTH, crack.x + i - 3, crack.y) & 1u) << u32(i);
+        found |= column_bit(g, FOUND_SOUTH, crack.x + i - 3, crack.y) << u32(i);
     }
     return crack + vec3(source_step(found), 0, 0);
 }

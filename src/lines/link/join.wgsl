@@ -48,8 +48,9 @@ fn load_window(g: Grid, cell: vec2<i32>) {
 }
 
 // Continues the lines of the window by one ledge, or takes away the ledges that have a loose
-// end.
-fn move_on(takes: bool) {
+// end. Returns whether there were any.
+fn move_on(takes: bool) -> bool {
+    var changed = 0u;
     var east_before = 0u;
     var south_before = 0u;
     for (var i = 0; i < WIDTH; i++) {
@@ -62,16 +63,25 @@ fn move_on(takes: bool) {
         let below = (e >> 1u) | s | beside;
         let left = south_before | east_before | (east_before >> 1u);
         let right = beside | e | (e >> 1u);
-        if takes {
-            east[i] = e & (~ledge_east[i] | (above & below));
-            south[i] = s & (~ledge_south[i] | (left & right));
-        } else {
-            east[i] = e | (ledge_east[i] & (above | below));
-            south[i] = s | (ledge_south[i] & (left | right));
-        }
+        // Bits of ledges that change.
+        let flips_east = ledge_east[i] & select(~e & (above | below), e & ~(above & below), takes);
+        let flips_south = ledge_south[i] & select(~s & (left | right), s & ~(left & right), takes);
+        changed |= flips_east | flips_south;
+        east[i] = e ^ flips_east;
+        south[i] = s ^ flips_south;
         east_before = e;
         south_before = s;
     }
+    return changed != 0u;
+}
+
+// Whether lines of the window's cell continue along ledges.
+fn has_joints() -> bool {
+    var joints = 0u;
+    for (var i = SIDE; i < SIDE + COLUMNS; i++) {
+        joints |= (east[i] & ledge_east[i]) | (south[i] & ledge_south[i]);
+    }
+    return ((joints >> u32(SIDE)) & 0xffu) != 0u;
 }
 
 // Adds the lines of the window's cell to the planes.
@@ -105,8 +115,18 @@ fn join(
         return;
     }
     load_window(g, cell);
-    for (var i = 0; i < 2 * STEPS; i++) {
-        move_on(i >= STEPS);
+    for (var i = 0; i < STEPS; i++) {
+        if !move_on(false) {
+            break;
+        }
+    }
+    if !has_joints() {
+        return;
+    }
+    for (var i = 0; i < STEPS; i++) {
+        if !move_on(true) {
+            break;
+        }
     }
     store_cell(g, cell);
 }

@@ -47,8 +47,9 @@ fn load_window(g: Grid, cell: vec2<i32>) {
     }
 }
 
-// Continues the lines of the window by one crack.
-fn grow() {
+// Continues the lines of the window by one crack. Returns whether any was there to continue.
+fn grow() -> bool {
+    var added = 0u;
     var east_before = 0u;
     var south_before = 0u;
     for (var i = 0; i < WIDTH; i++) {
@@ -58,12 +59,16 @@ fn grow() {
         let s = south[i];
         let beside = select(0u, south[min(i + 1, WIDTH - 1)], i + 1 < WIDTH);
         let ends = s | beside;
-        east[i] = e | (found_east[i] & ((e << 1u) | (e >> 1u) | ends | (ends << 1u)));
+        let more_east = found_east[i] & ~e & ((e << 1u) | (e >> 1u) | ends | (ends << 1u));
         let sides = e | east_before;
-        south[i] = s | (found_south[i] & (south_before | beside | sides | (sides >> 1u)));
+        let more_south = found_south[i] & ~s & (south_before | beside | sides | (sides >> 1u));
+        added |= more_east | more_south;
+        east[i] = e | more_east;
+        south[i] = s | more_south;
         east_before = e;
         south_before = s;
     }
+    return added != 0u;
 }
 
 // Adds the lines of the window's cell to the planes.
@@ -107,7 +112,9 @@ fn link(
     let steps = STEPS;
 #endif
     for (var step = 0; step < steps; step++) {
-        grow();
+        if !grow() {
+            break;
+        }
     }
     store_cell(g, cell);
 }

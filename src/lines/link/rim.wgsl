@@ -10,7 +10,7 @@
 #endif
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{SILHOUETTE_EAST, SILHOUETTE_SOUTH}
-#import bevy_comics::lines::read_planes::column_window
+#import bevy_comics::lines::read_planes::column_bit
 
 // Cracks within which silhouettes follow on both sides of one at the rim of a surface.
 const RIM: i32 = 16;
@@ -25,7 +25,7 @@ fn leads_to_silhouette(g: Grid, crack: vec3<i32>, corner: vec2<i32>) -> bool {
             return false;
         }
         let plane = select(SILHOUETTE_EAST, SILHOUETTE_SOUTH, next.z == 1);
-        if (column_window(g, plane, next.x, next.y) & 1u) != 0u {
+        if column_bit(g, plane, next.x, next.y) != 0u {
             return true;
         }
         at = other_corner(next, at);

@@ -10,7 +10,7 @@
     CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST,
     LINKED_SOUTH,
 }
-#import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
+#import bevy_comics::lines::read_planes::{crack_bit, cracks_from, load_column}
 #ifdef DEPTH
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #ifdef MIDDLE_DEPTH
@@ -87,26 +87,16 @@ struct Run {
     signs: vec2<f32>,
 }
 
-fn run_south(g: Grid, p: vec2<i32>) -> Run {
-    let before = countLeadingZeros(~row_window(g, p.x - 31, p.y));
-    let after = countTrailingZeros(~row_window(g, p.x, p.y));
-    let first = p.x - i32(before);
-    let last = p.x + i32(after) - 1;
+fn run_of(g: Grid, crack: vec3<i32>) -> Run {
+    let along = vec2<i32>(along_crack(crack));
+    let before = countLeadingZeros(~cracks_from(g, vec3(crack.xy - 31 * along, crack.z)));
+    let after = countTrailingZeros(~cracks_from(g, crack));
     let single = before + after == 2u;
-    let sign_before = end_sign(column_window(g, LINKED_EAST, first, p.y - 1), single);
-    let sign_after = end_sign(column_window(g, LINKED_EAST, last, p.y - 1), single);
-    return Run(vec2(before, after), vec2(sign_before, sign_after));
-}
-
-fn run_east(g: Grid, p: vec2<i32>) -> Run {
-    let before = countLeadingZeros(~column_window(g, LINKED_EAST, p.x, p.y - 31));
-    let after = countTrailingZeros(~column_window(g, LINKED_EAST, p.x, p.y));
-    let first = p.y - i32(before);
-    let last = p.y + i32(after) - 1;
-    let single = before + after == 2u;
-    let sign_before = end_sign(row_window(g, p.x - 1, first), single);
-    let sign_after = end_sign(row_window(g, p.x - 1, last), single);
-    return Run(vec2(before, after), vec2(sign_before, sign_after));
+    // The cracks across the run at its two ends.
+    let first = vec3(crack.xy - i32(before) * along - along.yx, 1 - crack.z);
+    let last = vec3(crack.xy + (i32(after) - 1) * along - along.yx, 1 - crack.z);
+    let signs = vec2(end_sign(cracks_from(g, first), single), end_sign(cracks_from(g, last), single));
+    return Run(vec2(before, after), signs);
 }
 #endif
 
@@ -116,19 +106,15 @@ fn run_east(g: Grid, p: vec2<i32>) -> Run {
 // next row.
 fn is_fold_crossed(g: Grid, crack: vec3<i32>) -> bool {
     let p = crack.xy;
-    if crack.z == 0 {
-        let beside = column_window(g, LINKED_EAST, p.x - 1, p.y) | column_window(g, LINKED_EAST, p.x + 1, p.y)
-            | column_window(g, LINKED_EAST, p.x - 2, p.y) | column_window(g, LINKED_EAST, p.x + 2, p.y)
-            | column_window(g, LINKED_EAST, p.x - 3, p.y) | column_window(g, LINKED_EAST, p.x + 3, p.y);
-        let across = column_window(g, LINKED_SOUTH, p.x - 1, p.y - 1) | column_window(g, LINKED_SOUTH, p.x + 2, p.y - 1);
-        return (beside & 1u) != 0u || (across & 3u) != 0u;
-    }
-    let beside = row_window(g, p.x, p.y - 1) | row_window(g, p.x, p.y + 1)
-        | row_window(g, p.x, p.y - 2) | row_window(g, p.x, p.y + 2)
-        | row_window(g, p.x, p.y - 3) | row_window(g, p.x, p.y + 3);
-    let across = column_window(g, LINKED_EAST, p.x - 1, p.y - 1) | column_window(g, LINKED_EAST, p.x, p.y - 1);
-    // Rows y - 1 and y + 2.
-    return (beside & 1u) != 0u || (across & 9u) != 0u;
+    let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
+    let before = p - across.yx;
+    let side = 1 - crack.z;
+    let beside = crack_bit(g, vec3(p - across, crack.z)) | crack_bit(g, vec3(p + across, crack.z))
+        | crack_bit(g, vec3(p - 2 * across, crack.z)) | crack_bit(g, vec3(p + 2 * across, crack.z))
+        | crack_bit(g, vec3(p - 3 * across, crack.z)) | crack_bit(g, vec3(p + 3 * across, crack.z));
+    let through = crack_bit(g, vec3(before - across, side)) | crack_bit(g, vec3(p - across, side))
+        | crack_bit(g, vec3(before + 2 * across, side)) | crack_bit(g, vec3(p + 2 * across, side));
+    return (beside | through) != 0u;
 }
 
 // The depths around a crack, which must be two pixels away from the border of the grid.
@@ -347,12 +333,7 @@ fn is_speck(g: Grid, crack: vec3<i32>) -> bool {
 fn packed_bend(g: Grid, crack: vec3<i32>, kept: bool, packed: u32) -> u32 {
     var bend = 0x8080u;
     if kept {
-        var run: Run;
-        if crack.z == 1 {
-            run = run_south(g, crack.xy);
-        } else {
-            run = run_east(g, crack.xy);
-        }
+        let run = run_of(g, crack);
         bend = pack_bend(bend_of(crack, run.seen, run.signs));
     }
 #ifdef FOLDS

@@ -88,6 +88,17 @@ impl Inputs<'_> {
         Ok(Some(([pass(fine)?, pass(coarse)?], densities)))
     }
 
+    /// The pass that notes which cracks meet at corners, if there is one.
+    pub(super) fn corners_pass(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Compute<'_>>, SkipReason> {
+        let planes = [buffers.written_planes(self.request.copies())];
+        let pass = |id| self.in_cells(id, &LineKey::corners_layout(), &planes);
+        passes.corners.map(pass).transpose()
+    }
+
     /// The pass that completes cracks, if there is one.
     pub(super) fn settle_pass(
         &self,

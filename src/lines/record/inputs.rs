@@ -262,6 +262,7 @@ impl Inputs<'_> {
                     persist: self.persist_pass(&passes, buffers)?,
                     bridge: self.bridge_pass(&passes, buffers)?,
                     measure: self.measure_passes(&passes, cracks, buffers)?,
+                    corners: self.corners_pass(&passes, buffers)?,
                     settle: self.settle_pass(&passes, cracks, buffers)?,
                     ends: self.ends_pass(&passes, cracks)?,
                 })))

@@ -42,6 +42,7 @@ pub(super) struct ReadyCells<'a> {
     pub persist: Option<ReadyLives<'a>>,
     pub bridge: Option<Ready<'a, ComputePipeline>>,
     pub measure: Option<ReadyDensities<'a>>,
+    pub corners: Option<Ready<'a, ComputePipeline>>,
     pub settle: Option<Ready<'a, ComputePipeline>>,
     pub ends: Option<Ready<'a, ComputePipeline>>,
 }
@@ -58,17 +59,22 @@ impl ReadyCells<'_> {
             self.buffers.copy_planes(encoder, self.link.len() % 2);
             self.dispatch(encoder, "comics_join_lines", join);
         }
+        let mut copies = self.link.len() + usize::from(self.join.is_some());
         if let Some((persist, lives)) = &self.persist {
             lives.clear(encoder);
             self.dispatch(encoder, "comics_persist_lines", persist);
         }
         if let Some(bridge) = &self.bridge {
-            let copies = self.link.len() + usize::from(self.join.is_some());
             self.buffers.copy_planes(encoder, copies % 2);
             self.dispatch(encoder, "comics_bridge_lines", bridge);
+            copies += 1;
         }
         if let Some((passes, densities)) = &self.measure {
             densities.measure(encoder, passes);
+        }
+        if let Some(corners) = &self.corners {
+            self.buffers.clear_corners(encoder, copies);
+            self.dispatch(encoder, "comics_line_corners", corners);
         }
         if let Some(settle) = &self.settle {
             self.dispatch(encoder, "comics_settle_lines", settle);

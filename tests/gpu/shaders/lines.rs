@@ -143,6 +143,7 @@ fn completing() -> Vec<Variant> {
         each("lines/link/link.wgsl", &["", "LAST"]),
         each("lines/link/density.wgsl", &["", "COARSE"]),
         each("lines/link/join.wgsl", &[""]),
+        each("lines/link/corners.wgsl", &[""]),
         each("lines/link/bridge.wgsl", &[""]),
         each("lines/tiles/tiles.wgsl", &[""]),
         each("lines/tiles/tile.wgsl", &[""]),
