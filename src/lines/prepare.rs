@@ -189,7 +189,9 @@ impl ViewLines {
             .then(|| LineLives::next(before, kept, device, request));
         self.found = AtomicBool::new(false);
         let is_new = self.memory.as_ref().is_none_or(|memory| memory.is_new);
-        self.uniform.set(request.uniform(is_new));
+        let past_size = self.lives.as_ref().map(LineLives::past_size);
+        let uniform = request.uniform(is_new, past_size.unwrap_or_default());
+        self.uniform.set(uniform);
         self.uniform.write_buffer(device, queue);
         match &self.cracks.as_ref()?.store {
             CrackStore::Buffers(buffers) => Some(buffers.shown(request.rect, request.copies())),

@@ -6,6 +6,7 @@ use crate::{
     outlines::removed,
     pictures::outlined,
     prelude::*,
+    upscaled::override_main_pass,
     walls::{towards_the_sky, wall},
 };
 
@@ -55,6 +56,9 @@ struct Step {
     small: Small,
     front: Entity,
     is_level: bool,
+    /// The size of the main pass in every second frame, if it is another one.
+    lower: Option<UVec2>,
+    is_lower: bool,
 }
 
 /// The height of a step, in units of the threshold: a fraction of 1.2 times the height of the
@@ -77,6 +81,8 @@ impl Step {
             small,
             front,
             is_level,
+            lower: None,
+            is_lower: false,
         }
     }
 
@@ -90,6 +96,10 @@ impl Step {
         };
         let at = Transform::from_xyz(x, y, -200.0 + height);
         self.small.on(object).insert(at);
+        if self.lower.is_some() {
+            self.is_lower = !self.is_lower;
+            override_main_pass(&mut self.small, self.lower.filter(|_| self.is_lower));
+        }
         self.small.headless.step(1);
         let ink = removed(&self.small);
         let rows = ink.chunks_exact(SIZE.x as usize);
@@ -255,6 +265,28 @@ fn assert_follow(is_level: bool, speeds: &[f32]) {
         );
     }
     assert_eq!(step.small.errors(), 0);
+}
+
+/// Lines stay where the resolution of the main pass changes in every frame, from either one to the
+/// other, also where they move.
+#[test]
+fn lines_stay_while_the_resolution_changes() {
+    for is_level in [false, true] {
+        let mut step = Step::with_edge(is_level);
+        step.lower = Some((SIZE.as_vec2() * 0.7).as_uvec2());
+        step.style(2.0, 3);
+        for _ in 0..2 {
+            step.strong();
+            assert_eq!(step.stays(judged(3), WEAK, 0.0), 3, "level: {is_level}");
+            // The next weak frame has the other resolution.
+            step.frame(STRONG, 0.0);
+        }
+        step.small.insert((DepthPrepass, MotionVectorPrepass));
+        step.strong();
+        let stays = step.stays(judged(3), WEAK, 5.0);
+        assert_eq!(stays, 3, "moving, level: {is_level}");
+        assert_eq!(step.small.errors(), 0);
+    }
 }
 
 /// A bar passes over weak edges that are parallel to its sides, and wakes them: they are gone as

@@ -66,6 +66,9 @@ struct Lines {
     // How much raw depth bends at least at a fold of 90 degrees, as a fraction of what a jump is one of; see
     // DepthProjection::least_bend.
     bend: f32,
+    // HARD: of two surfaces of which none hides the other, the line belongs to the one that faces this direction
+    // of the world more.
+    owner_direction: vec3<f32>,
     convex: EdgeInk,
     concave: EdgeInk,
 }
@@ -94,9 +97,10 @@ struct Grid {
     bridge: i32,
     // Frames that lines stay where their edges have become weak.
     persistence: i32,
+    // Size of the grid of the last frame, if lines stay.
+    past_size: vec2<i32>,
     // Pixels by which loose ends are extended.
     overshoot: f32,
-    unused: i32,
 }
 
 // The edge response, 0 to 1, of g = (g_min, g_max) over 3 x 3 pixels ([CL] Eq. 2).
@@ -212,6 +216,12 @@ fn departures(
 // mesh with flat sides, and about 0 between flat layers.
 const CURVED: f32 = 0.1;
 
+// Twice the raw depth by which the plane of `before` and `here` is in front of that of `there` and
+// `beyond`, if both are parallel.
+fn in_front_by(before: vec4<f32>, here: vec4<f32>, there: vec4<f32>, beyond: vec4<f32>) -> vec4<f32> {
+    return 3.0 * (here - there) - before + beyond;
+}
+
 // Whether the step from `here` to `there` is part of a curve that ends in a larger step
 // directly beside it. Just inside the rim of a curved surface, depth falls so steeply that
 // one or two steps there would be silhouettes too.
@@ -247,12 +257,6 @@ fn is_in_front(d: f32, other: f32, jump: f32) -> bool {
 fn fold(a: vec4<f32>, b: vec4<f32>) -> f32 {
     let d = a.xyz - b.xyz;
     return select(-1.0, dot(d, d), a.w * b.w > 0.0);
-}
-
-// How much a surface faces a direction of the world, from above, for lines that belong to one of
-// two surfaces of which none hides the other. The direction is on no plane of symmetry of boxes.
-fn facing(normal: vec4<f32>) -> f32 {
-    return dot(normal.xyz, vec3(0.31, 0.90, 0.29));
 }
 
 // Response to folds.

@@ -13,12 +13,28 @@ use crate::{
     lines::{request::LineRequest, settings::Outlines},
 };
 
+/// The lives of a frame, for a grid of a size.
+struct Frame {
+    size: UVec2,
+    buffer: Buffer,
+}
+
+impl Frame {
+    fn new(device: &RenderDevice, size: UVec2) -> Self {
+        // A word for four pixels of a row.
+        let bytes = 4 * u64::from(size.x.div_ceil(4).max(1)) * u64::from(size.y.max(1));
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        Self {
+            size,
+            buffer: buffer(device, "comics_line_lives", bytes, usage),
+        }
+    }
+}
+
 /// The lives of a view's lines, see `lives.wgsl`.
 pub(crate) struct LineLives {
-    /// Size of the grid.
-    size: UVec2,
-    /// This frame and the one before.
-    buffers: [Buffer; 2],
+    /// This frame and the one before. The size of the main pass may have changed between them.
+    frames: [Frame; 2],
     cuts: u32,
     settings: Outlines,
     /// Whether the last frame says nothing about this one.
@@ -34,44 +50,51 @@ impl LineLives {
         request: &LineRequest,
     ) -> Self {
         let size = UVec2::new(request.rect.z, request.rect.w);
-        let settings = request.settings;
-        if let Some(mut before) = before.filter(|before| before.size == size) {
-            before.buffers.swap(0, 1);
-            // Other settings are seen at once.
-            let same = before.cuts == request.cuts && before.settings == settings;
-            before.is_new = !kept || !same;
-            before.cuts = request.cuts;
-            before.settings = settings;
-            return before;
-        }
-        // A word for four pixels of a row.
-        let bytes = 4 * u64::from(size.x.div_ceil(4).max(1)) * u64::from(size.y.max(1));
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let buffer = || buffer(device, "comics_line_lives", bytes, usage);
+        let (cuts, settings) = (request.cuts, request.settings);
+        let Some(before) = before else {
+            return Self {
+                frames: [Frame::new(device, size), Frame::new(device, size)],
+                cuts,
+                settings,
+                is_new: true,
+            };
+        };
+        let [past, unused] = before.frames;
+        let now = if unused.size == size {
+            unused
+        } else {
+            Frame::new(device, size)
+        };
+        // Other settings are seen at once.
+        let same = before.cuts == cuts && before.settings == settings;
         Self {
-            size,
-            buffers: [buffer(), buffer()],
-            cuts: request.cuts,
+            frames: [now, past],
+            cuts,
             settings,
-            is_new: true,
+            is_new: !kept || !same,
         }
+    }
+
+    /// Size of the grid of the last frame.
+    pub fn past_size(&self) -> UVec2 {
+        self.frames[1].size
     }
 
     /// Clears what the pass does not write, and what says nothing about this frame.
     pub fn clear(&self, encoder: &mut CommandEncoder) {
-        let [now, past] = &self.buffers;
-        encoder.clear_buffer(now, 0, None);
+        let [now, past] = &self.frames;
+        encoder.clear_buffer(&now.buffer, 0, None);
         if self.is_new {
-            encoder.clear_buffer(past, 0, None);
+            encoder.clear_buffer(&past.buffer, 0, None);
         }
     }
 
     /// The bindings of `persist.wgsl`: the last frame, and this one.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
-        let [now, past] = &self.buffers;
+        let [now, past] = &self.frames;
         [
-            entry(28, past.as_entire_binding()),
-            entry(29, now.as_entire_binding()),
+            entry(28, past.buffer.as_entire_binding()),
+            entry(29, now.buffer.as_entire_binding()),
         ]
     }
 }

@@ -1,13 +1,14 @@
 // Keeps lines where the last frames had them: a found crack that no line has reached becomes a
 // part of one if it was one at most Grid::persistence frames ago (hysteresis in time), or if one a
 // pixel further across was, which has gone. Cracks that are kept do not continue lines, so that
-// lines do not creep along weak edges. In a still view there is nothing to keep.
+// lines do not creep along weak edges. In a still view there is nothing to keep. The grid of the last
+// frame may have another size.
 //
 // MOTION: the place in the last frame is that of the nearer surface, to whole pixels.
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
-#import bevy_comics::lines::lives::{life_shift, life_word, next_life}
+#import bevy_comics::lines::lives::{life_shift, life_word, next_life, past_pixel}
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
     CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
@@ -25,11 +26,12 @@
 @group(0) @binding(28) var<storage> past_lives: array<u32>;
 @group(0) @binding(29) var<storage, read_write> lives: array<u32>;
 
-// The life of a crack in the last frame; 0 outside of the grid.
+// The life of a crack of the last frame's grid; 0 outside of it.
 fn past_life(g: Grid, crack: vec3<i32>) -> u32 {
-    let inside = all(crack.xy >= vec2(0)) && all(crack.xy < g.rect.zw);
-    let p = clamp(crack, vec3(0), vec3(g.rect.zw - 1, 1));
-    let life = (past_lives[life_word(g, p.xy)] >> life_shift(p)) & 15u;
+    let size = g.past_size;
+    let inside = all(crack.xy >= vec2(0)) && all(crack.xy < size);
+    let p = clamp(crack, vec3(0), vec3(size - 1, 1));
+    let life = (past_lives[life_word(size.x, p.xy)] >> life_shift(p)) & 15u;
     return select(0u, life, inside);
 }
 
@@ -45,14 +47,15 @@ fn is_found(g: Grid, crack: vec3<i32>) -> bool {
 // The longest life in the last frame of a crack, and of those beside it that have gone.
 fn life_around(g: Grid, crack: vec3<i32>) -> u32 {
     let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
-    var from_pixel = crack.xy;
+    let past_size = vec2<f32>(g.past_size);
+    var moved = vec2(0.0);
 #ifdef MOTION
     let here = g.rect.xy + crack.xy;
     let there = here + across;
     let owner = select(there, here, texel_depth(here, 0) >= texel_depth(there, 0));
-    let moved = textureLoad(motion_texture, owner, 0).xy * vec2<f32>(line_pass.seen.viewport.zw);
-    from_pixel -= vec2<i32>(round(moved * g.from_viewport.xy));
+    moved = textureLoad(motion_texture, owner, 0).xy * past_size;
 #endif
+    let from_pixel = past_pixel(crack, past_size / vec2<f32>(g.rect.zw), moved);
     var life = past_life(g, vec3(from_pixel, crack.z));
     if !is_found(g, vec3(crack.xy - across, crack.z)) {
         life = max(life, past_life(g, vec3(from_pixel - across, crack.z)));
@@ -118,7 +121,7 @@ fn persist(
     }
     for (var row = 0; row < CELL_ROWS; row++) {
         if cell.y + row < g.rect.w {
-            lives[life_word(g, cell + vec2(0, row))] = rows[row];
+            lives[life_word(g.rect.z, cell + vec2(0, row))] = rows[row];
         }
     }
 }

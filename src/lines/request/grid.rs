@@ -19,8 +19,8 @@ pub(crate) struct Grid {
     pub specks: i32,
     pub bridge: i32,
     pub persistence: i32,
+    pub past_size: IVec2,
     pub overshoot: f32,
-    pub unused: i32,
 }
 
 /// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.

@@ -163,7 +163,7 @@ impl LineRequest {
         }
     }
 
-    fn grid(&self) -> Grid {
+    fn grid(&self, past_size: UVec2) -> Grid {
         let scale = self.view.depth_scale;
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
         // In columns, and where lines leave their cracks, cracks half a pixel further away count.
@@ -193,17 +193,18 @@ impl LineRequest {
             specks: self.specks,
             bridge: self.settings.gap_closing as i32,
             persistence: self.settings.hold_frames as i32,
+            past_size: past_size.as_ivec2(),
             overshoot: self.extension,
-            unused: 0,
         }
     }
 
-    /// `is_new`: the memory has nothing in it yet.
-    pub fn uniform(&self, is_new: bool) -> LinePassUniform {
+    /// `is_new`: the memory has nothing in it yet. `past_size`: size of the grid of the last frame,
+    /// if lines stay.
+    pub fn uniform(&self, is_new: bool, past_size: UVec2) -> LinePassUniform {
         LinePassUniform {
             view: self.view,
             lines: self.lines,
-            grid: self.grid(),
+            grid: self.grid(past_size),
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
             fade: self.fade.unwrap_or_default(),
