@@ -103,7 +103,7 @@ pub(super) fn plain_request(
         camera: view.camera,
         settings,
         view: uniform,
-        lines: settings.uniform(view.scale_factor, reference, bend),
+        lines: settings.uniform(view.scale_factor, reference, bend, scene.right),
         weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
         boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
         memory: memory_request(view, &settings, scene),

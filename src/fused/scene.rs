@@ -6,7 +6,7 @@ use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::entity::Entity,
-    math::{UVec2, UVec4, Vec2},
+    math::{UVec2, UVec4, Vec2, Vec3},
     render::{
         camera::TemporalJitter,
         render_resource::TextureUsages,
@@ -21,6 +21,8 @@ use crate::{composite::BeyondPrepass, depth::view::depth_rect, objects::QueuedDe
 #[derive(Clone, Copy)]
 pub(super) struct Scene {
     pub viewport: UVec4,
+    /// Unit vector to the right of the camera, in world space; to the left of a mirrored one.
+    pub right: Vec3,
     /// Size of the main pass in pixels, if it differs from the viewport.
     pub main_pass_size: Option<UVec2>,
     /// By how much the engine has moved the main pass in this frame, in its pixels,
@@ -60,8 +62,10 @@ impl Scene {
         (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
     ) -> Self {
         let depth = prepass.and_then(|textures| textures.depth.as_ref());
+        let camera = &extracted.world_from_view;
         Self {
             viewport: extracted.viewport,
+            right: camera.up().cross(*camera.back()),
             main_pass_size: resolution.map(|resolution| resolution.0),
             jitter: jitter.map(|jitter| jitter.offset),
             depth: depth.map(|depth| {

@@ -82,6 +82,14 @@ fn to_light(small: &mut Small) -> [f64; 3] {
     found.unwrap_or(Vec3::Y).to_array().map(f64::from)
 }
 
+/// Unit vector to the right of the camera.
+fn right(small: &Small) -> [f64; 3] {
+    let world = small.headless.app.world();
+    let camera = world.get::<GlobalTransform>(small.camera);
+    let right = camera.map_or(Vec3::X, |camera| *camera.right());
+    right.to_array().map(f64::from)
+}
+
 /// What the passes of the small scene read.
 pub fn view_of<'a>(
     small: &mut Small,
@@ -103,6 +111,7 @@ pub fn view_of<'a>(
         height: orthographic(small).map_or(0.0, |p| f64::from(p.area.height())),
         least_bend: least_bend(small, viewport, depth.samples),
         to_light: to_light(small),
+        right: right(small),
     }
 }
 

@@ -61,12 +61,21 @@ fn owned(here_preferred: vec4<bool>, has_here: vec4<bool>, has_there: vec4<bool>
     return select(here_preferred, has_here, has_here != has_there);
 }
 
+// A step, as a fraction of what a jump is one of.
+const STEP: f32 = 2e-5;
+// The fold of 3 degrees.
+const PARALLEL: f32 = 0.0027;
+
 // Whether a line along which no surface hides the other belongs to `here`, if both draw it.
-fn preferred(at: Borders) -> vec4<bool> {
+fn preferred(at: Borders, reference: vec4<f32>) -> vec4<bool> {
 #ifdef HARD
-    // One side all along: the object of the larger id, or the surface that faces a direction more.
+    // One side all along: the object of the larger id; or the surface that faces a direction more; of
+    // parallel ones that in front; and in one plane the larger section.
     let object = at.object_here > at.object_there;
-    return select(at.faces_more >= vec4(0.0), object, at.object_here != at.object_there);
+    let has_step = abs(at.in_front) > STEP * reference;
+    let parallel = select(at.marks_here > at.marks_there, at.in_front > vec4(0.0), has_step);
+    let surface = select(at.faces_more > vec4(0.0), parallel, at.folds < vec4(PARALLEL));
+    return select(surface, object, at.object_here != at.object_there);
 #else
     return at.here >= at.there;
 #endif
@@ -153,8 +162,7 @@ const SILENT: u32 = 255u;
 // The fold of 10 degrees, and the tangent of half of it.
 const BENT: f32 = 0.0304;
 const BENT_TANGENT: f32 = 0.0875;
-// A step, and a change of the slope per pixel, as fractions of what a jump is a fraction of.
-const STEP: f32 = 2e-5;
+// A change of the slope per pixel, as a fraction of what a jump is one of.
 const TURN: f32 = 5e-5;
 
 // 0 where there is no section.
@@ -242,7 +250,7 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     found.ink = select(found.ink, ink, crease);
     // At a rim a crease only continues another.
     found.certain |= crease & ridge & (response >= vec4(s.crease_limit));
-    found.mine = select(found.mine, owned(preferred(at), drawn_here, drawn_there), crease);
+    found.mine = select(found.mine, owned(preferred(at, reference), drawn_here, drawn_there), crease);
     return found;
 }
 #endif
@@ -256,7 +264,7 @@ fn add_object_edges(before: Found, s: Lines, at: Borders, reference: vec4<f32>, 
     let drawn_there = has(there, OBJECT);
     let here_nearer = at.here >= at.there;
     let hides = abs(at.here - at.there) > s.jump * reference;
-    let mine = select(owned(preferred(at), drawn_here, drawn_there), here_nearer, hides);
+    let mine = select(owned(preferred(at, reference), drawn_here, drawn_there), here_nearer, hides);
     let drawn = select(drawn_there, drawn_here, mine);
     let object = (at.object_here != at.object_there) & drawn;
     found.kinds |= select(vec4(0u), vec4(OBJECT), object);
@@ -336,7 +344,8 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
     ledge = are_ledges(found, s, at, here, there);
     found.kinds |= select(vec4(0u), vec4(CREASE), ledge);
     found.ink = select(found.ink, vec4(1.0), ledge);
-    found.mine = select(found.mine, owned(preferred(at), has(here, CREASE), has(there, CREASE)), ledge);
+    let mine = owned(preferred(at, reference), has(here, CREASE), has(there, CREASE));
+    found.mine = select(found.mine, mine, ledge);
 #endif
     return Cracks(packed_of(found, s, at), found.certain, ledge);
 }

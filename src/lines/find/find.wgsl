@@ -5,7 +5,7 @@
 #import bevy_comics::depth::view::{is_drawn_sky, set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
 #import bevy_comics::lines::edge::{
-    departures, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+    departures, fold, in_front_by, is_outdone, is_ridge, is_rim_ridge, step_excess,
 }
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
@@ -91,6 +91,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let beyond_2 = vec2(depth_at(origin, high_3.x, p.y), depth_at(origin, p.x, high_3.y)).xyxy;
     at.excess = step_excess(before_2, before, at.here, at.there, beyond, beyond_2);
     at.outdone = is_outdone(before, at.here, at.there, beyond);
+#ifdef HARD
+    at.in_front = in_front_by(before, at.here, at.there, beyond);
+#endif
 #ifdef SECTIONS
     at.departs = departures(before_2, before, at.here, at.there, beyond, beyond_2);
 #endif
@@ -119,7 +122,8 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let s = normal_at(origin + vec2(p.x, high.y));
     at.folds = vec2(fold(n, e), fold(n, s)).xyxy;
 #ifdef HARD
-    at.faces_more = facing(n) - vec2(facing(e), facing(s)).xyxy;
+    let direction = line_pass.settings.owner_direction;
+    at.faces_more = dot(n.xyz, direction) - vec2(dot(e.xyz, direction), dot(s.xyz, direction)).xyxy;
 #endif
     let folds_before = vec2(
         fold(normal_at(origin + vec2(low.x, p.y)), n),

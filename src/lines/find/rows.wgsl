@@ -6,9 +6,11 @@
 
 #import bevy_comics::depth::view::{is_drawn_sky, texel_depth}
 #import bevy_comics::lines::edge::{
-    Departures, departures, facing, fold, is_outdone, is_ridge, is_rim_ridge, step_excess,
+    Departures, departures, fold, in_front_by, is_outdone, is_ridge, is_rim_ridge, step_excess,
 }
 #ifdef BENDS
+#import bevy_comics::lines::pass::line_pass
+#else ifdef HARD
 #import bevy_comics::lines::pass::line_pass
 #endif
 #ifdef NORMALS
@@ -55,7 +57,7 @@ struct Above {
     // Normals of the row above, by column.
     normals: array<vec4<f32>, 4>,
     folds: array<vec4<f32>, 3>,
-    // HARD: see facing.
+    // HARD: how much they face owner_direction.
     facings: array<vec4<f32>, 3>,
     objects: array<vec4<u32>, 3>,
     marks: array<vec4<u32>, 3>,
@@ -86,8 +88,9 @@ struct Borders {
     folds: vec4<f32>,
     ridge: vec4<bool>,
     rim: vec4<bool>,
-    // HARD: by how much more `here` faces the direction of lines that hide nothing.
+    // HARD: by how much more `here` faces owner_direction; and see in_front_by.
     faces_more: vec4<f32>,
+    in_front: vec4<f32>,
     object_here: vec4<u32>,
     object_there: vec4<u32>,
     marks_here: vec4<u32>,
@@ -189,6 +192,12 @@ fn step_depths(above: ptr<function, Above>, c: Columns, row: i32, found: ptr<fun
     (*found).south.excess = step_excess(
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
     );
+#ifdef HARD
+    (*found).east.in_front = in_front_by((*found).before, depth, (*found).east.there, beyond);
+    (*found).south.in_front = in_front_by(
+        (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0],
+    );
+#endif
 #ifndef BOUNDS
 #ifdef SECTIONS
     (*found).east.departs = departures(
@@ -253,8 +262,11 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
     (*found).east.folds = folds;
     (*found).south.folds = (*above).folds[1];
 #ifdef HARD
-    let facings = vec4(facing(n_a), facing(n_b), facing(n_c), facing(n_d));
-    (*found).east.faces_more = facings - vec4(facings.yzw, facing(n_e));
+    let direction = line_pass.settings.owner_direction;
+    let facings = vec4(
+        dot(n_a.xyz, direction), dot(n_b.xyz, direction), dot(n_c.xyz, direction), dot(n_d.xyz, direction),
+    );
+    (*found).east.faces_more = facings - vec4(facings.yzw, dot(n_e.xyz, direction));
     (*found).south.faces_more = (*above).facings[2] - (*above).facings[1];
     (*above).facings[2] = (*above).facings[1];
     (*above).facings[1] = (*above).facings[0];

@@ -22,8 +22,14 @@ impl Outlines {
 
     /// The settings as shaders take them. `scale` is physical pixels per logical
     /// pixel, `reference` that of `DepthProjection::jump_reference`, `bend` that of
-    /// `DepthProjection::least_bend`.
-    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2], bend: f32) -> LinesUniform {
+    /// `DepthProjection::least_bend`, `right` a unit vector to the right of the camera.
+    pub(crate) fn uniform(
+        &self,
+        scale: f32,
+        reference: [f32; 2],
+        bend: f32,
+        right: Vec3,
+    ) -> LinesUniform {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();
         let o = self.objects.unwrap_or_default();
@@ -73,10 +79,17 @@ impl Outlines {
             found_sections: u32::from(self.divides_meshes()),
             normal_creases: u32::from(c.source != CreaseSource::Meshes),
             bend,
+            owner_direction: owner_direction(right),
             convex: EdgeUniform::new(c.convex),
             concave: EdgeUniform::new(c.concave),
         }
     }
+}
+
+/// Above, and towards the camera: the same for a scene and its mirror image. Surfaces that are mirror
+/// images of each other face both alike, so it is a little to the right.
+fn owner_direction(right: Vec3) -> Vec3 {
+    0.90 * Vec3::Y + 0.42 * right.cross(Vec3::Y) + 0.02 * right
 }
 
 /// `Lines` of `edge.wgsl`.
@@ -112,6 +125,7 @@ pub(crate) struct LinesUniform {
     found_sections: u32,
     normal_creases: u32,
     bend: f32,
+    owner_direction: Vec3,
     convex: EdgeUniform,
     concave: EdgeUniform,
 }
@@ -133,7 +147,7 @@ mod tests {
                 creases: Some(Creases::default()),
                 ..Outlines::NONE
             };
-            settings.uniform(1.0, [1.0, 0.0], 0.0).jump
+            settings.uniform(1.0, [1.0, 0.0], 0.0, Vec3::X).jump
         };
         let faithful = |threshold| Silhouettes {
             equations: Equations::Faithful,

@@ -1,7 +1,7 @@
 //! The rules of cracks on random pictures, in the fragment shader, which is run as a function.
 //! `cracks.rs` compares the compute passes, which share the rules, on models.
 
-use bevy_comics::lines::CreaseSource;
+use bevy_comics::lines::{CreaseSource, LineEdge};
 use bevy_comics_testkit::{
     reference::{crack::crack, map::Projection, view::View},
     wgsl::without_stage,
@@ -63,6 +63,7 @@ fn settings(s: &Outlines) -> String {
          line_pass.settings.found_sections = {}u;
          line_pass.settings.normal_creases = {}u;
          line_pass.settings.bend = {LEAST_BEND:?};
+         line_pass.settings.owner_direction = vec3(0.02, 0.90, 0.42);
          line_pass.settings.ink_part = 1.0;",
         silhouettes.threshold,
         u32::from(creases.source != CreaseSource::Normals),
@@ -192,6 +193,7 @@ impl Picture {
             height: 0.0,
             least_bend: LEAST_BEND,
             to_light: [0.0, 0.0, 1.0],
+            right: [1.0, 0.0, 0.0],
         }
     }
 }
@@ -242,6 +244,19 @@ fn assert_matches_the_reference(
     kinds
 }
 
+/// What all lines are found with, but for creases at the edges of meshes alone.
+const ALL: [&str; 9] = [
+    "DEPTH",
+    "EXCESS",
+    "SILHOUETTES",
+    "NORMALS",
+    "OBJECT_IDS",
+    "CREASES",
+    "OBJECT_EDGES",
+    "SECTIONS",
+    "BENDS",
+];
+
 /// Also at the borders of grids, and in grids that are smaller than what a crack depends on.
 #[test]
 fn cracks_of_fragments_match_the_reference() {
@@ -252,16 +267,6 @@ fn cracks_of_fragments_match_the_reference() {
         objects: None,
         ..all
     };
-    let names = [
-        "DEPTH",
-        "EXCESS",
-        "SILHOUETTES",
-        "NORMALS",
-        "OBJECT_IDS",
-        "CREASES",
-        "OBJECT_EDGES",
-        "SECTIONS",
-    ];
     for source in [
         CreaseSource::Normals,
         CreaseSource::Meshes,
@@ -277,11 +282,8 @@ fn cracks_of_fragments_match_the_reference() {
             ..all
         };
         let without = source == CreaseSource::Meshes;
-        let names = names.into_iter().filter(|n| !(without && *n == "NORMALS"));
-        let mut names: Vec<&str> = names.collect();
-        if !without {
-            names.push("BENDS");
-        }
+        let is_read = |name: &&str| !(without && ["NORMALS", "BENDS"].contains(name));
+        let names: Vec<&str> = ALL.into_iter().filter(is_read).collect();
         let kinds = assert_matches_the_reference(&picture, &all, &names);
         // Without normals, few borders of these pictures are confirmed.
         let least = [50, if without { 5 } else { 50 }, 50];
@@ -289,4 +291,18 @@ fn cracks_of_fragments_match_the_reference() {
         let [count, ..] = assert_matches_the_reference(&picture, &silhouettes, &names[..3]);
         assert!(count > 50, "{count}");
     }
+}
+
+/// Hard lines belong to the larger object, to the surface that faces above or the camera, to the
+/// one in front, or to the larger section.
+#[test]
+fn owners_of_hard_lines_match_the_reference() {
+    let picture = Picture::new(&mut Numbers::new(82));
+    let hard = Outlines {
+        edge: LineEdge::Hard,
+        ..outlines()
+    };
+    let names = [&ALL[..], &["HARD"]].concat();
+    let kinds = assert_matches_the_reference(&picture, &hard, &names);
+    assert!(kinds.iter().all(|count| *count > 50), "{kinds:?}");
 }

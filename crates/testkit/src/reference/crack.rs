@@ -162,17 +162,31 @@ fn sections(
 /// not to its neighbour.
 fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
     let objects = along(view, pixel, v, |x, y| match view.ids {
-        Some(ids) => ids.pixels[(y * view.width + x) as usize][0],
-        None => 0,
+        Some(ids) => ids.pixels[(y * view.width + x) as usize],
+        None => [0; 2],
     });
-    if objects[2] != objects[3] {
-        return objects[2] > objects[3];
+    let [here, there] = [objects[2], objects[3]];
+    if here[0] != there[0] {
+        return here[0] > there[0];
     }
-    let facing = along(view, pixel, v, |x, y| match normal(view, x, y) {
-        Some([x, y, z]) => 0.31 * x + 0.90 * y + 0.29 * z,
-        None => 0.0,
-    });
-    facing[2] >= facing[3]
+    // Above, towards the camera, and a little to its right.
+    let [x, _, z] = view.right;
+    let direction = [0.02 * x - 0.42 * z, 0.90, 0.02 * z + 0.42 * x];
+    let normals = along(view, pixel, v, |x, y| normal(view, x, y));
+    // 3 degrees.
+    let bent = fold(normals[2], normals[3]).filter(|fold| *fold >= 0.0027);
+    if let (Some(_), Some(here), Some(there)) = (bent, normals[2], normals[3]) {
+        let more: f64 = (0..3).map(|i| direction[i] * (here[i] - there[i])).sum();
+        return more > 0.0;
+    }
+    let depths = along(view, pixel, v, |x, y| view.depth(x, y, 0));
+    let in_front = 3.0 * (depths[2] - depths[3]) - depths[1] + depths[4];
+    let has_step = in_front.abs() > 2e-5 * view.jump_reference(depths[2].max(depths[3]));
+    if has_step {
+        in_front > 0.0
+    } else {
+        here[1] > there[1]
+    }
 }
 
 /// How much raw depth bends at the crack between a pixel and its neighbour at a side, as a fraction of

@@ -31,6 +31,8 @@ pub struct View<'a> {
     pub least_bend: f64,
     /// Unit vector towards the light that lines follow.
     pub to_light: [f64; 3],
+    /// Unit vector to the right of the camera.
+    pub right: [f64; 3],
 }
 
 impl View<'_> {
