@@ -125,9 +125,9 @@ fn fade_levels(
     let fading = at
         .filter(|_| plan.fades && plan.needs_depth())
         .map(|at| levels.fading(at.translation(), places))
-        .filter(|fading| !fading.is_empty());
+        .filter(|fading| !fading.meshes.is_empty());
     match fading {
-        Some(fading) => view.insert(FadingMeshes(fading)),
+        Some(fading) => view.insert(fading),
         None => view.remove::<FadingMeshes>(),
     };
 }

@@ -3,10 +3,11 @@
 use bevy::{
     color::Color,
     ecs::{
+        change_detection::DetectChanges,
         component::Component,
         query::{AnyOf, Changed, Or},
         reflect::ReflectComponent,
-        system::ResMut,
+        system::{Res, ResMut},
     },
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -14,6 +15,7 @@ use bevy::{
 use super::{
     anchors::{Anchor, Anchored},
     inherit::{Heritage, Inherit, Inherited},
+    levels::Levels,
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
@@ -198,12 +200,13 @@ pub(crate) fn assign_object_styles(
     mut outlined: Inherited<Outlined>,
     mut unstyled: Inherited<NoStyle>,
     mut anchored: Inherited<Anchored>,
+    levels: Res<Levels>,
     mut styles: ResMut<ObjectStyles>,
 ) {
     let mut changed = outlined.update();
     changed.extend(unstyled.update());
     changed.extend(anchored.update());
-    if changed.is_empty() {
+    if changed.is_empty() && !levels.is_changed() {
         return;
     }
     let style = |object| {
@@ -223,5 +226,10 @@ pub(crate) fn assign_object_styles(
         }
         Some(style)
     };
-    styles.assign(changed.into_iter().map(|object| (object, style(object))));
+    styles.assign(changed.iter().map(|object| (*object, style(*object))));
+    if levels.is_changed() {
+        changed.extend(levels.changed.iter().copied());
+    }
+    let fade = |object| (object, levels.fades_to_nothing(object));
+    styles.fade(changed.into_iter().map(fade));
 }

@@ -166,8 +166,8 @@ pub(super) fn queue_object_ids(
         };
         let out = changes.2.out_of_range(entity, view);
         let fading = fading.filter(|_| key.targets.is_some());
-        let fading = fading.map(|meshes| meshes.0.clone());
-        let levels = [out, fading.unwrap_or_default()];
+        let FadingMeshes { meshes, gone } = fading.cloned().unwrap_or_default();
+        let levels = [out, meshes, gone];
         queue.update((view.retained_view_entity, class), &changes, levels);
         if test.compiles_ahead() {
             phase.note_ahead(&test, &items);
@@ -207,13 +207,19 @@ impl Queue<'_, '_> {
         &mut self,
         (view, class): (RetainedViewEntity, &RenderVisibleEntitiesClass),
         (dirty, changed, _): &Changes,
-        [out_of_range, fading]: [MainEntityHashSet; 2],
+        levels: [MainEntityHashSet; 3],
     ) {
-        let before = std::mem::replace(&mut self.phase.out_of_range, out_of_range);
-        let crossed = before.symmetric_difference(&self.phase.out_of_range);
-        let faded = std::mem::replace(&mut self.phase.fading, fading);
-        let fades = faded.symmetric_difference(&self.phase.fading);
-        let crossed: Vec<_> = crossed.chain(fades).copied().collect();
+        let ObjectIdPhase {
+            out_of_range,
+            fading,
+            gone,
+            ..
+        } = &mut *self.phase;
+        let mut crossed = Vec::new();
+        for (known, now) in [out_of_range, fading, gone].into_iter().zip(levels) {
+            let before = std::mem::replace(known, now);
+            crossed.extend(before.symmetric_difference(known).copied());
+        }
         let outdated = dirty.must_wipe_specializations_for_view(view);
         if self.phase.begin(self.key, outdated, &mut self.records.ids) {
             for (_, mesh) in class.iter_visible() {
@@ -263,7 +269,8 @@ impl Queue<'_, '_> {
         }
         if let Ok((bin, input)) = found {
             let cutoff = fading.and_then(|_| self.transparent.alpha_mask(mesh));
-            let record = self.records.of(mesh.id(), cutoff);
+            let is_gone = self.phase.gone.contains(&mesh);
+            let record = self.records.of(mesh.id(), cutoff, is_gone);
             self.phase.add(bin, Instance::new(mesh, input, record));
         }
         if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
@@ -302,8 +309,10 @@ pub(super) struct Records<'w> {
 
 impl Records<'_> {
     /// Id, style slot, start of the sections and bits of the least alpha of a mesh.
-    fn of(&mut self, mesh: Entity, alpha_mask: Option<f32>) -> [u32; 4] {
-        let slot = self.styles.slots.get(mesh).copied().unwrap_or(0);
+    fn of(&mut self, mesh: Entity, alpha_mask: Option<f32>, is_gone: bool) -> [u32; 4] {
+        let faded = self.styles.faded.get(mesh).filter(|_| is_gone);
+        let slot = faded.or_else(|| self.styles.slots.get(mesh));
+        let slot = slot.copied().unwrap_or(0);
         let id = self.ids.give(self.levels.object(self.groups.object(mesh)));
         let start = self.sections.get(mesh).unwrap_or(0);
         let cutoff = self.writes.cutoffs.get(mesh);

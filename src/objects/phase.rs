@@ -162,6 +162,8 @@ pub(crate) struct ObjectIdPhase {
     pub pending: MainEntityHashSet,
     /// Meshes that fade, see [`FadingMeshes`](super::levels::FadingMeshes).
     pub fading: MainEntityHashSet,
+    /// Those of them that have mostly faded to nothing.
+    pub gone: MainEntityHashSet,
     /// Meshes that the GPU leaves out.
     pub out_of_range: MainEntityHashSet,
     /// Whether draw calls and buffers have yet to follow the bins.

@@ -61,6 +61,8 @@ pub(crate) struct ObjectStyles {
     pub entries: Vec<ObjectStyleUniform>,
     /// The slot of each object, by main-world entity.
     pub slots: Shared<u8>,
+    /// The slots of objects while they have mostly faded to nothing: their styles, without lines.
+    pub faded: Shared<u8>,
     #[cfg(feature = "objects")]
     users: Users,
     /// Some mesh is divided into sections.
@@ -83,6 +85,10 @@ pub(crate) const HIDDEN_ONLY: u32 = 16;
 #[cfg(feature = "objects")]
 pub(crate) const VISIBLE_ONLY: u32 = 32;
 
+/// The bits of `ObjectStyleUniform::kinds` of all kinds of line.
+#[cfg(feature = "objects")]
+const ALL_KINDS: u32 = 7;
+
 /// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
 #[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;
@@ -97,7 +103,7 @@ pub(crate) struct DepthWrites {
 /// Which components of objects there are in a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ObjectChanges {
-    /// Some object has its own line style, or no lines, or [`UNSTYLED`].
+    /// Some object has its own line style, or no lines, or [`UNSTYLED`], or fades to nothing.
     pub any: bool,
     /// Some mesh is divided into sections, and some because it has `MeshSections`.
     pub sections: bool,
@@ -116,7 +122,7 @@ pub(crate) struct ObjectChanges {
 
 impl ObjectStyles {
     pub fn any(&self) -> bool {
-        !self.slots.is_empty()
+        !(self.slots.is_empty() && self.faded.is_empty())
     }
 
     pub fn changes(&self) -> ObjectChanges {
@@ -189,17 +195,34 @@ impl ObjectStyles {
             return None;
         }
         let slot = *self.slots.get(object)?;
+        self.release(slot);
+        Some(slot)
+    }
+
+    /// Frees a slot if this was its last use.
+    fn release(&mut self, slot: u8) {
         let at = usize::from(slot);
         self.users.counts[at] -= 1;
         if self.users.counts[at] == 0 {
             let unused = std::mem::take(&mut self.entries[at]);
             self.users.known.remove(&unused.bits());
         }
-        Some(slot)
     }
 
-    /// The slot of a style; that of `before` if it is new and that slot is free.
+    /// The slot of the style of an object, see [`take`](Self::take).
     fn enter(&mut self, object: Entity, before: Option<u8>, style: ObjectStyleUniform) -> u8 {
+        self.take(before, style).unwrap_or_else(|| {
+            bevy::log::warn_once!(
+                "more than {MOST_STYLES} different outline styles: the others are drawn like the last"
+            );
+            self.users.waiting.insert(object, style);
+            MOST_STYLES as u8
+        })
+    }
+
+    /// The slot of a style; that of `before` if it is new and that slot is free. `None` if none is
+    /// free.
+    fn take(&mut self, before: Option<u8>, style: ObjectStyleUniform) -> Option<u8> {
         if self.entries.is_empty() {
             self.entries.push(ObjectStyleUniform::default());
             self.users.counts.push(1);
@@ -214,13 +237,7 @@ impl ObjectStyles {
             let before = before.map(usize::from).filter(is_free);
             before.or_else(|| (1..=MOST_STYLES).find(is_free))
         };
-        let Some(at) = known.or_else(free) else {
-            bevy::log::warn_once!(
-                "more than {MOST_STYLES} different outline styles: the others are drawn like the last"
-            );
-            users.waiting.insert(object, style);
-            return MOST_STYLES as u8;
-        };
+        let at = known.or_else(free)?;
         if at == entries.len() {
             entries.push(style);
             users.counts.push(0);
@@ -228,7 +245,29 @@ impl ObjectStyles {
         entries[at] = style;
         users.counts[at] += 1;
         users.known.insert(style.bits(), at as u8);
-        at as u8
+        Some(at as u8)
+    }
+
+    /// Says which objects fade to nothing at some distance. If no slot is free, an object keeps its
+    /// lines.
+    pub fn fade(&mut self, objects: impl Iterator<Item = (Entity, bool)>) {
+        self.faded.begin();
+        for (object, fades) in objects {
+            let before = self.faded.get(object).copied();
+            if let Some(before) = before {
+                self.release(before);
+            }
+            let slot = if fades {
+                let slot = self.slots.get(object).copied().unwrap_or(0);
+                let own = self.entries.get(usize::from(slot));
+                let mut style = own.copied().unwrap_or_default();
+                style.kinds &= !ALL_KINDS;
+                self.take(before, style)
+            } else {
+                None
+            };
+            self.faded.set(object, slot);
+        }
     }
 }
 
@@ -257,6 +296,7 @@ impl ObjectStyleUniform {
 impl super::changes::Follow for ObjectStyles {
     fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
         self.slots.follow(&main.slots, changed);
+        self.faded.follow(&main.faded, changed);
         self.entries.clone_from(&main.entries);
         self.sections = main.sections;
         self.marks = main.marks;
@@ -335,6 +375,31 @@ mod tests {
         let slot = styles.slots.get(object(7)).copied();
         styles.assign([(object(3), None), (object(7), style(10))].into_iter());
         assert_eq!(styles.slots.get(object(7)).copied(), slot);
+    }
+
+    /// An object that has mostly faded has its own style without lines, and needs no slot later.
+    #[test]
+    fn faded_objects_have_their_styles_without_lines() {
+        let mut styles = ObjectStyles::default();
+        let unstyled = ObjectStyleUniform {
+            kinds: ALL_KINDS | UNSTYLED,
+            ..Default::default()
+        };
+        let kinds = |styles: &ObjectStyles| {
+            [1, 2].map(|index| {
+                let slot = styles.faded.get(object(index)).copied();
+                slot.map(|slot| styles.entries[usize::from(slot)].kinds)
+            })
+        };
+        styles.assign([(object(1), Some(unstyled))].into_iter());
+        styles.fade([(object(1), true), (object(2), true)].into_iter());
+        assert_eq!(kinds(&styles), [Some(UNSTYLED), Some(0)]);
+        styles.assign([(object(1), None)].into_iter());
+        styles.fade([(object(1), true)].into_iter());
+        assert_eq!(kinds(&styles), [Some(0); 2]);
+        styles.fade([(object(1), false), (object(2), false)].into_iter());
+        assert_eq!(kinds(&styles), [None; 2]);
+        assert!(!styles.any() && styles.users.known.is_empty());
     }
 
     /// A slot that becomes free goes to the first object that waits.

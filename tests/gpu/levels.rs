@@ -6,22 +6,34 @@ use bevy_comics::testing::ObjectWork;
 
 use crate::{prelude::*, small};
 
+/// A sphere that is seen between two margins.
+fn put_level(small: &mut Small, start_margin: Range<f32>, end_margin: Range<f32>, detail: u32) {
+    let mesh = Sphere::new(1.0).mesh().ico(4 * detail).expect("a sphere");
+    let sphere = small.put(mesh, unlit(Color::srgb(0.9, 0.5, 0.2)), Transform::IDENTITY);
+    small.world().entity_mut(sphere).insert(VisibilityRange {
+        start_margin,
+        end_margin,
+        use_aabb: false,
+    });
+}
+
+fn away(distance: f32) -> Transform {
+    Transform::from_xyz(0.0, 0.0, distance).looking_at(Vec3::ZERO, Vec3::Y)
+}
+
+/// The radius of the sphere in pixels of a picture of this height: the field of view of 45 degrees of the default.
+fn radius_of(height: f32, distance: f32) -> f32 {
+    height / 2.0 / std::f32::consts::FRAC_PI_8.tan() / (distance * distance - 1.0).sqrt()
+}
+
 /// Two spheres of other detail at one place, of which the near one fades into the far one between 8 and 12 units, and
 /// the camera at this distance.
 fn show(small: &mut Small, distance: f32) {
     small.clear();
     let margin = 8.0..12.0;
-    let levels = [(0.0..0.0, margin.clone(), 5), (margin, 50.0..50.0, 3)];
-    for (start_margin, end_margin, detail) in levels {
-        let mesh = Sphere::new(1.0).mesh().ico(4 * detail).expect("a sphere");
-        let sphere = small.put(mesh, unlit(Color::srgb(0.9, 0.5, 0.2)), Transform::IDENTITY);
-        small.world().entity_mut(sphere).insert(VisibilityRange {
-            start_margin,
-            end_margin,
-            use_aabb: false,
-        });
-    }
-    small.insert(Transform::from_xyz(0.0, 0.0, distance).looking_at(Vec3::ZERO, Vec3::Y));
+    put_level(small, 0.0..0.0, margin.clone(), 5);
+    put_level(small, margin, 50.0..50.0, 3);
+    small.insert(away(distance));
     small.settle();
     small.settle();
 }
@@ -31,9 +43,7 @@ fn ink(small: &mut Small, distance: f32) -> (f32, usize) {
     show(small, distance);
     let picture = small.picture();
     let size = UVec2::new(picture.width(), picture.height()).as_vec2();
-    // The field of view of 45 degrees of the default.
-    let radius =
-        size.y / 2.0 / std::f32::consts::FRAC_PI_8.tan() / (distance * distance - 1.0).sqrt();
+    let radius = radius_of(size.y, distance);
     let dark = picture
         .enumerate_pixels()
         .filter(|(.., pixel)| pixel.0[0] < 60);
@@ -90,6 +100,70 @@ fn there_are_no_holes_with_depth_alone() {
     assert!(blue(4, 4));
 }
 
+/// Two cameras, each with a half of the picture.
+fn split(small: &mut Small) -> [Entity; 2] {
+    let target = small.headless.render_target();
+    let second = small.world().spawn(small::camera(target, Msaa::Off)).id();
+    let cameras = [small.camera, second];
+    for (camera, order) in cameras.into_iter().zip(0_u8..) {
+        let viewport = Viewport {
+            physical_position: UVec2::new(96 * u32::from(order), 0),
+            physical_size: UVec2::new(96, 128),
+            ..default()
+        };
+        let settings = Camera {
+            viewport: Some(viewport),
+            order: order.into(),
+            clear_color: if order == 0 {
+                Color::srgb(0.3, 0.5, 0.8).into()
+            } else {
+                ClearColorConfig::None
+            },
+            ..default()
+        };
+        small.on(camera).insert(settings);
+        let world = small.world();
+        let style = ComicStyle::new().with(Outlines::default());
+        style.apply(&mut world.commands().entity(camera));
+        world.flush();
+    }
+    cameras
+}
+
+/// A mesh that fades to nothing has its whole outline until half of it is gone, and then none, in each view by its
+/// own distance.
+#[test]
+fn what_fades_to_nothing_has_no_lines_in_the_end() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
+    small.clear();
+    put_level(&mut small, 0.0..0.0, 8.0..12.0, 5);
+    let cameras = split(&mut small);
+    // Of both halves: ink, of the length of the outline, and the pixels that show the sphere.
+    let mut drawn = |distances: [f32; 2]| {
+        for (camera, distance) in cameras.into_iter().zip(distances) {
+            small.on(camera).insert(away(distance));
+        }
+        small.settle();
+        small.settle();
+        let picture = small.picture();
+        [0, 1].map(|half: u32| {
+            let pixels = picture.enumerate_pixels().filter(|(x, ..)| x / 96 == half);
+            let reds: Vec<_> = pixels.map(|(.., pixel)| pixel.0[0]).collect();
+            let ink = reds.iter().filter(|red| **red < 60).count() as f32;
+            let sphere = reds.iter().filter(|red| **red > 200).count();
+            (ink / radius_of(128.0, distances[half as usize]), sphere)
+        })
+    };
+    let [(whole, _), (half_gone, sphere)] = drawn([7.5, 10.4]);
+    let [(fading, _), gone] = drawn([9.2, 12.5]);
+    assert!(whole > 5.0, "{whole}");
+    assert!(fading > 0.8 * whole, "{fading}, {whole}");
+    assert!(sphere > 100, "{sphere}");
+    assert_eq!(half_gone, 0.0);
+    assert_eq!(gone, (0.0, 0));
+    assert_eq!(small.errors(), 0);
+}
+
 /// A mesh that fades is queued by itself.
 #[test]
 fn a_fade_queues_only_its_own_levels() {
@@ -100,7 +174,6 @@ fn a_fade_queues_only_its_own_levels() {
     small.settle();
     let queued = |small: &Small| ObjectWork::of(small.render_world()).queued;
     let before = queued(&small);
-    let away = |distance| Transform::from_xyz(0.0, 0.0, distance).looking_at(Vec3::ZERO, Vec3::Y);
     small.insert(away(10.0)).settle();
     let fading = queued(&small);
     assert!((1..=4).contains(&(fading - before)), "{}", fading - before);
