@@ -4,7 +4,7 @@ use bevy::{
     app::{App, PostUpdate},
     camera::{
         Camera, Camera3d, Camera3dDepthLoadOp, CameraOutputMode, CameraUpdateSystems,
-        ClearColorConfig, Hdr, MsaaWriteback, Projection, RenderTarget, visibility::RenderLayers,
+        ClearColorConfig, Exposure, Hdr, MsaaWriteback, Projection, RenderTarget, visibility::RenderLayers,
     },
     color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
@@ -22,7 +22,10 @@ use bevy::{
     },
     prelude::{DetectChanges, DetectChangesMut},
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::{render_resource::BlendState, view::Msaa},
+    render::{
+        render_resource::BlendState,
+        view::{ColorGrading, Msaa},
+    },
     transform::{TransformSystems, components::Transform},
 };
 
@@ -64,7 +67,7 @@ pub fn overlay_camera(order: isize) -> Camera {
 /// its geometry. For gizmos, markers and particles.
 ///
 /// A child of the camera draws them: an [`overlay_camera`] with the next order and the same projection,
-/// viewport, target, tonemapping, `Hdr` and `Msaa`. It goes with the component. What is drawn has to be in these
+/// viewport, target, exposure, color grading, tonemapping, `Hdr` and `Msaa`. It goes with the component. What is drawn has to be in these
 /// layers, and not in those of the camera itself: for gizmos, by
 /// `GizmoConfig::render_layers`.
 ///
@@ -95,6 +98,7 @@ type Copied<'w> = (
     &'w Msaa,
     Option<&'w Hdr>,
     (Option<&'w Tonemapping>, Option<&'w DebandDither>),
+    (Option<Ref<'w, Exposure>>, Option<Ref<'w, ColorGrading>>),
 );
 
 fn spawn_overlays(
@@ -130,17 +134,23 @@ fn update_overlays(
             (&mut Camera, &mut Projection, &mut RenderTarget),
             (&mut Msaa, &mut RenderLayers, Option<&Hdr>),
             (&mut Tonemapping, &mut DebandDither),
+            (&mut Exposure, &mut ColorGrading),
         ),
         With<OverlayOf>,
     >,
 ) {
-    for (entity, of, (mut camera, mut projection, mut target), copies, mut color) in &mut overlays {
+    for (entity, of, (mut camera, mut projection, mut target), copies, mut color, light) in
+        &mut overlays
+    {
+        let (mut exposure, mut grading) = light;
         let (mut msaa, mut layers, hdr) = copies;
         let Ok((copied, overlay)) = comics.get(of.0) else {
             commands.entity(entity).despawn();
             continue;
         };
-        let (own, own_projection, own_target, own_msaa, own_hdr, (tonemapping, dither)) = copied;
+        let (own, own_projection, own_target, own_msaa, own_hdr, own_color, own_light) = copied;
+        let (tonemapping, dither) = own_color;
+        let (own_exposure, own_grading) = own_light;
         camera.order = own.order.saturating_add(1);
         camera.is_active = own.is_active;
         camera.viewport.clone_from(&own.viewport);
@@ -151,6 +161,12 @@ fn update_overlays(
         }
         if own_target.is_changed() || of.is_added() {
             target.clone_from(&own_target);
+        }
+        if let Some(own) = own_exposure.filter(|own| own.is_changed() || of.is_added()) {
+            *exposure = *own;
+        }
+        if let Some(own) = own_grading.filter(|own| own.is_changed() || of.is_added()) {
+            grading.clone_from(&own);
         }
         msaa.set_if_neq(*own_msaa);
         layers.set_if_neq(overlay.0.clone());

@@ -225,6 +225,18 @@ impl DrawnMeshes<'_> {
     }
 }
 
+/// Warns of a material that may move vertices in the main pass alone.
+pub(super) fn warn_of_vertices(entity: MainEntity, properties: &MaterialProperties) {
+    let moves = properties.get_shader(MaterialVertexShader).is_some();
+    if moves && properties.get_shader(PrepassVertexShader).is_none() {
+        warn_once!(
+            "the material of {entity:?} has a vertex shader, but none for the prepass: if it moves \
+             vertices, pixels are lost; implement `prepass_vertex_shader`, or return false from \
+             `enable_prepass`"
+        );
+    }
+}
+
 /// Finds the bins of objects.
 #[derive(SystemParam)]
 pub(super) struct IdItems<'w> {
@@ -269,14 +281,7 @@ impl IdItems<'_> {
         if !in_prepass(drawn.properties) || self.is_backdrop(entity) {
             return Err(Missing::NotDrawn);
         }
-        let moves = drawn.properties.get_shader(MaterialVertexShader).is_some();
-        if moves && drawn.properties.get_shader(PrepassVertexShader).is_none() {
-            warn_once!(
-                "the material of {entity:?} has a vertex shader, but none for the prepass: if it moves \
-                 vertices, pixels are lost; implement `prepass_vertex_shader`, or return false from \
-                 `enable_prepass`"
-            );
-        }
+        warn_of_vertices(entity, drawn.properties);
         let uses_material = reads_material(drawn.properties);
         let key = drawn.material_key(drawn.mesh_key(view_key, uses_material));
         let (cache, layout) = (&self.cache, &drawn.mesh.layout);

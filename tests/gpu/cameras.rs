@@ -2,7 +2,7 @@
 
 use bevy::{
     camera::{
-        Camera3dDepthLoadOp, CameraProjection, ClearColorConfig, Projection,
+        Camera3dDepthLoadOp, CameraProjection, ClearColorConfig, Exposure, Projection,
         visibility::RenderLayers,
     },
     math::Vec4,
@@ -376,6 +376,11 @@ fn an_overlay_is_drawn_over_the_comic() {
     small.settle();
     let middle = small.picture().get_pixel(96, 64).0;
     assert!((0..3).all(|c| middle[c].abs_diff([r, g, b][c]) <= 1));
+    small.insert(Exposure { ev100: 3.0 });
+    small.settle();
+    let world = small.world();
+    let mut exposures = world.query::<&Exposure>();
+    assert!(exposures.iter(world).all(|own| own.ev100 == 3.0));
     small.camera_mut().remove::<ComicOverlay>();
     small.settle();
     let world = small.world();

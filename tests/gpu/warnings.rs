@@ -14,13 +14,17 @@ use bevy_comics::{
     objects::Backdrop,
 };
 
-use crate::prelude::*;
+use crate::{
+    prelude::*,
+    ramp::{bright, put, sun},
+    ramp_detail::two_tones,
+};
 
 /// Set in the process that writes to the log.
 const ALONE: &str = "WARNINGS_ALONE";
 
 /// Part of each warning: in the log once, however many frames are drawn.
-const WARNINGS: [&str; 9] = [
+const WARNINGS: [&str; 10] = [
     "is a Camera2d",
     "has no colour target",
     "`LensDistortion` on",
@@ -30,7 +34,11 @@ const WARNINGS: [&str; 9] = [
     "`RangeOf`",
     "`LineEdge::Hard`",
     "`Backdrop`",
+    "in more than 64 views, materials do not find the visible range",
 ];
+
+/// Views of two pixels: one more than materials find the visible range of.
+const VIEWS: u32 = 65;
 
 /// Warnings are logged once in a process, so the cameras are in a process of their own.
 #[test]
@@ -97,4 +105,70 @@ fn draw_all() {
     small.world().despawn(deferred);
     small.insert((Outlines::PIXELS, Msaa::Sample4));
     small.headless.step(3);
+    draw_many_views(&mut small);
+}
+
+/// Where a view begins.
+fn corner(view: u32) -> UVec2 {
+    UVec2::new(2 * (view % 48), view / 48)
+}
+
+/// The left pixel of each view shows a wall at the near end of its range, the right one a wall at the far end. A view
+/// that does not find its range draws both as at the near end.
+fn draw_many_views(small: &mut Small) {
+    small.clear();
+    let world = small.world();
+    let mut cameras = world.query_filtered::<Entity, With<Camera>>();
+    for camera in cameras.iter(world).collect::<Vec<_>>() {
+        world.despawn(camera);
+    }
+    world.insert_resource(GlobalAmbientLight {
+        brightness: 0.0,
+        ..default()
+    });
+    sun(small, Vec3::Z, bright(1.0));
+    let light = two_tones(DetailAxis::VisibleRange, RampMode::LightFraction);
+    for (side, z) in [(-0.5, 2.0), (0.5, 50.0)] {
+        let height = 2.0 * std::f32::consts::FRAC_PI_8.tan() * z;
+        let at = Transform::from_xyz(side * height, 0.0, -z).with_scale(Vec3::splat(height));
+        put(small, Rectangle::new(0.9, 0.9), &light, at);
+    }
+    let target = small.headless.render_target();
+    for view in 0..VIEWS {
+        let viewport = Viewport {
+            physical_position: corner(view),
+            physical_size: UVec2::new(2, 1),
+            ..default()
+        };
+        let settings = Camera {
+            viewport: Some(viewport),
+            order: view as isize,
+            clear_color: if view == 0 {
+                Color::BLACK.into()
+            } else {
+                ClearColorConfig::None
+            },
+            ..default()
+        };
+        let camera = crate::small::camera(target.clone(), Msaa::Off);
+        let camera = small.world().spawn((camera, Exposure::default())).id();
+        small.world().entity_mut(camera).insert((
+            settings,
+            Transform::IDENTITY,
+            VisibleDepthRange::default(),
+        ));
+    }
+    small.headless.step(4);
+    let picture = small.picture();
+    // Red at the near end, blue at the far one.
+    let count = |right: u32, is_near: bool| {
+        let views = (0..VIEWS).filter(|view| {
+            let at = corner(*view);
+            let [red, _, blue, _] = picture.get_pixel(at.x + right, at.y).0;
+            (is_near && red > blue) || (!is_near && blue > red)
+        });
+        views.count()
+    };
+    assert_eq!(count(0, true), 65);
+    assert_eq!([count(1, true), count(1, false)], [1, 64]);
 }

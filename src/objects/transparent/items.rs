@@ -25,7 +25,7 @@ use bevy::{
 
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
-    items::{DrawnMeshes, Missing},
+    items::{DrawnMeshes, Missing, warn_of_vertices},
     phase::{Bin, Layer},
     pipeline::{IdParts, ObjectIdPipeline, in_prepass, reads_material},
     table::DepthWrites,
@@ -138,6 +138,7 @@ impl TransparentItems<'_> {
         }
         let cutoff = self.own.has_cutoff(entity, properties);
         let cutoff = cutoff.ok_or(Missing::NotDrawn)?;
+        warn_of_vertices(entity, properties);
         self.bin_of(entity, view_key, targets, cutoff)
     }
 
