@@ -57,6 +57,13 @@ fn lines() -> Vec<(String, Drawn)> {
             },
         ),
         (
+            "without an ink budget",
+            Outlines {
+                ink_budget: 1.0,
+                ..default
+            },
+        ),
+        (
             "with soft ink",
             Outlines {
                 silhouettes: Some(Silhouettes {
@@ -238,7 +245,28 @@ fn changes() -> Vec<Part> {
             base: None,
         });
     }
+    parts.extend([BuiltIn::Village, BuiltIn::Mountains].map(ink_budget));
     parts
+}
+
+/// Two passes measure how densely lines lie. They crowd on the meadow of the mountains.
+fn ink_budget(scene: BuiltIn) -> Part {
+    let outlines = |ink_budget| {
+        ComicStyle::new().with(Outlines {
+            ink_budget,
+            ..default()
+        })
+    };
+    Part {
+        name: "ink budget",
+        scene,
+        change: |_| (),
+        styles: vec![
+            ("outlines; no ink budget", outlines(1.0)),
+            ("outlines; ink budget", outlines(0.35)),
+        ],
+        base: None,
+    }
 }
 
 /// Times each change on a scene of its own, in turn with the scene that it is compared with.

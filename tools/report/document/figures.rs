@@ -87,9 +87,10 @@ fn dash_steps(folder: &Path) -> Option<String> {
 
 fn meadow(folder: &Path) -> Option<String> {
     let table = load(folder, "meadow_ink").ok()?;
-    let rows: Vec<&Vec<String>> = (table.rows.iter())
-        .filter(|row| table.cell(row, "form") != "faithful")
-        .collect();
+    let has_budget = |row: &&Vec<String>| {
+        table.cell(row, "form") != "faithful" && table.number(row, "budget") < 1.0
+    };
+    let rows: Vec<&Vec<String>> = table.rows.iter().filter(has_budget).collect();
     let [budget, free] = ["most", "most_free"].map(|column| largest(&table.numbers(&rows, column)));
     Some(format!(
         "at most {budget:.2} of any area with an ink budget, {free:.2} without"

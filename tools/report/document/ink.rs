@@ -90,9 +90,10 @@ fn meadow(out: &mut String, folder: &Path) -> Result<(), String> {
     );
     let table = load(folder, "meadow_ink")?;
     for row in &table.rows {
-        let budget = match table.cell(row, "form") {
-            "faithful" => "none: faithful",
-            _ => table.cell(row, "budget"),
+        let budget = match (table.cell(row, "form"), table.cell(row, "budget")) {
+            ("faithful", _) => "none: faithful",
+            (_, "1") => "none",
+            (_, budget) => budget,
         };
         let [mean, most, free, most_free] =
             ["mean", "most", "mean_free", "most_free"].map(|column| table.number(row, column));

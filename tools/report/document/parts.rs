@@ -13,6 +13,12 @@ const MEMORY: &str = "part: temporal anti-aliasing";
 const WITH_MEMORY: &str = "outlines; temporal anti-aliasing; memory";
 const WITHOUT_MEMORY: &str = "outlines; temporal anti-aliasing; no memory";
 
+/// Styles whose base is another one of their section.
+const PAIRS: [[&str; 2]; 2] = [
+    [WITH_MEMORY, WITHOUT_MEMORY],
+    ["outlines; ink budget", "outlines; no ink budget"],
+];
+
 /// The laps in which parts of the scene cost time.
 const LAPS_OF_PARTS: [&str; 4] = ["prepass", "range", "lines", "post"];
 
@@ -55,7 +61,7 @@ fn scene_parts(out: &mut String, times: &Table) {
          other is named. The times include the prepass, which a camera without a style does not \
          have; that of temporal anti-aliasing, and its own pass, are left out, since a camera \
          without a style has them. Over the base: what the same style costs more than on the same scene without the part, \
-         timed in turn with it; the median, the least and the most of the rounds. The base of the memory of lines is the same without memory. \
+         timed in turn with it; the median, the least and the most of the rounds. The base of the memory of lines and of the ink budget is the same without it. \
          Under temporal anti-aliasing, a copy is lost in the noise of the passes around it (-). Differences below 10 ms may be noise. \
          The glass is the mesh with most vertices:\n\n\
          | | ms | blits | over the base, ms | least to most |\n|---|---|---|---|---|\n",
@@ -113,10 +119,10 @@ fn over_nothing(times: &Table, [section, scene, variant]: [&str; 3]) -> Vec<f64>
 fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> Option<[f64; 3]> {
     let [part, base] = sections;
     let with = over_nothing(times, [part, scene, style]);
-    let without = if style == WITH_MEMORY {
-        over_nothing(times, [part, scene, WITHOUT_MEMORY])
-    } else {
-        over_nothing(times, [base, scene, style])
+    let pair = PAIRS.iter().find(|[with, _]| *with == style);
+    let without = match pair {
+        Some([_, without]) => over_nothing(times, [part, scene, without]),
+        None => over_nothing(times, [base, scene, style]),
     };
     if without.is_empty() {
         return None;
