@@ -27,7 +27,7 @@ impl WorldOrigin {
         if origin.is_finite() {
             return origin;
         }
-        warn_once!("`WorldOrigin` is {origin}: it counts as zero");
+        warn_once!("`WorldOrigin` is {origin}, which is not finite: zero is used");
         DVec3::ZERO
     }
 }

@@ -29,8 +29,8 @@ use crate::{
     settings::clamp_or_default,
 };
 
-/// Shows an impact frame on a camera: for one to three drawings two tones by lightness, with
-/// focus lines over them; then the picture is as before.
+/// Shows an impact frame on a camera: two tones by lightness with focus lines over them, for one to
+/// three drawings. Then the picture is as before.
 ///
 /// It replaces the [`TwoTone`] and [`SpeedLines`] of the camera meanwhile, works on cameras
 /// without any effect, and needs no prepass. A new impact ends the one before. It is hidden
@@ -40,8 +40,8 @@ use crate::{
 /// compiles a pipeline; it is shown, and its time begins, when that is done.
 ///
 /// **Flashes.** Fast flashes can cause seizures (WCAG 2.3.1). At most [`Impact::MOST_FLASHES`]
-/// flashes are begun in any second of real time on a render target, by all of its cameras together,
-/// also those that are gone by now: what would exceed that is refused, and counted in
+/// flashes begin in any second of real time on a render target, counting all of its cameras, even
+/// despawned ones. Further impacts are refused, and counted in
 /// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). A flash counts from the frame
 /// that shows it, not from its trigger. The resource [`ReduceFlashing`] replaces the tones by a dim
 /// picture.

@@ -33,9 +33,8 @@ use crate::{
     settings::{FieldRange, clamp_or_default},
 };
 
-/// Shows an object and the meshes below it in poses that are held for several frames, as
-/// characters that are animated "on twos", while the camera and everything else moves at full
-/// rate.
+/// Holds the poses of an object and of the meshes below it for several frames, like those of a
+/// character that is animated "on twos", while the camera and everything else move at full rate.
 ///
 /// Shown is the pose of the first frame of every drawing: the `GlobalTransform` of the
 /// entity and of the meshes below it, and the joints of their skins. Simulation and
@@ -43,7 +42,7 @@ use crate::{
 /// are those of the picture: none while a pose is held.
 ///
 /// Cameras and lights below the entity are never held. A `SteppedAnimation` below another one has
-/// its own rate. Not held: morph targets, materials, and what other crates draw without meshes.
+/// its own rate. Morph targets, materials, and what other crates draw without meshes are not held.
 /// Meshes are culled, and the cascades of shadows fitted, by the true pose: an object that enters
 /// the view fast can appear up to a drawing late. Needs the feature `objects` or `toon`.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]

@@ -17,9 +17,9 @@ use bevy::{
 /// Lines follow the light of this entity: it shines forward (along the entity's -Z), as a
 /// directional light does. See [`LineWeight::shade`](crate::lines::LineWeight::shade).
 ///
-/// Without a key light, lines follow the brightest visible `DirectionalLight` of the scene, if
-/// the crate has the feature `objects` or `toon`; without any, a light from straight above.
-/// Of several key lights, one is taken.
+/// Without a key light, lines follow the brightest visible `DirectionalLight` of the scene, if the
+/// crate has the feature `objects` or `toon`; without any, a light from straight above. If there
+/// are several key lights, one of them is used.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[require(Transform)]
 #[reflect(Component, Default, Clone, PartialEq)]

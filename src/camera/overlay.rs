@@ -4,7 +4,8 @@ use bevy::{
     app::{App, PostUpdate},
     camera::{
         Camera, Camera3d, Camera3dDepthLoadOp, CameraOutputMode, CameraUpdateSystems,
-        ClearColorConfig, Exposure, Hdr, MsaaWriteback, Projection, RenderTarget, visibility::RenderLayers,
+        ClearColorConfig, Exposure, Hdr, MsaaWriteback, Projection, RenderTarget,
+        visibility::RenderLayers,
     },
     color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
@@ -66,13 +67,13 @@ pub fn overlay_camera(order: isize) -> Camera {
 /// On a camera with effects: entities of these layers are drawn over its comic without any effect, hidden by
 /// its geometry. For gizmos, markers and particles.
 ///
-/// A child of the camera draws them: an [`overlay_camera`] with the next order and the same projection,
-/// viewport, target, exposure, color grading, tonemapping, `Hdr` and `Msaa`. It goes with the component. What is drawn has to be in these
-/// layers, and not in those of the camera itself: for gizmos, by
-/// `GizmoConfig::render_layers`.
+/// A child of the camera draws them: an [`overlay_camera`] with the next order and the same
+/// projection, viewport, target, exposure, color grading, tonemapping, `Hdr` and `Msaa`. It is
+/// despawned when the component is removed. What is drawn has to be in these layers, and not in
+/// those of the camera itself: for gizmos, by `GizmoConfig::render_layers`.
 ///
-/// A game that asks for its only camera finds two: give its own camera a marker. Bevy UI is drawn by the camera
-/// of the highest order, unless one has `IsDefaultUiCamera`.
+/// A query for a single camera then matches two: give the game's own camera a marker component.
+/// Bevy UI is drawn by the camera of the highest order, unless one has `IsDefaultUiCamera`.
 ///
 /// Default: layer 1.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]

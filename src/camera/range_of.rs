@@ -12,19 +12,20 @@ use bevy::{
 
 use crate::style::Comic;
 
-/// Gives a camera the visible range of another one, smoothed as there: what is equally far away
-/// has the same place in the depth maps of both. For the second eye, the halves of a split screen,
-/// a minimap. The camera then does not measure a range of its own.
+/// Gives a camera the smoothed visible range of another one, so that equal distances have the same
+/// place in the depth maps of both. For the second eye, the halves of a split screen, a minimap.
+/// The camera then does not measure a range of its own.
 ///
-/// If the other camera has a lower [`Camera::order`], the range is that of the same frame, otherwise
-/// that of the frame before. It may have a `RangeOf` of its own; at most 8 in a row, without circles.
-/// The other camera must be active and have an effect; if not, in its first frame, and without
-/// compute shaders, the camera measures its own range.
+/// If the other camera has a lower [`Camera::order`], the range is that of the same frame,
+/// otherwise that of the frame before. It may have a `RangeOf` of its own, in chains of at most 8,
+/// without cycles. The other camera must be active and have an effect; if not, in its first frame,
+/// and without compute shaders, the camera measures its own range.
 ///
-/// The camera's own [`DepthMap`](crate::DepthMap) says how the range is mapped, but for its `smoothing`
-/// and `locked`: equal colours need equal mappings. [`DepthHistogram`](crate::depth::DepthHistogram) and
-/// [`VisibleDepthRange`](crate::depth::VisibleDepthRange) of the camera count what it sees itself, and so
-/// do [`DepthLayers`](crate::DepthLayers).
+/// The camera's own [`DepthMap`](crate::DepthMap) says how the range is mapped; its `smoothing` and
+/// `locked` have no effect. Equal colours need equal mappings.
+/// [`DepthHistogram`](crate::depth::DepthHistogram) and
+/// [`VisibleDepthRange`](crate::depth::VisibleDepthRange) of the camera count what it sees itself,
+/// and so do [`DepthLayers`](crate::DepthLayers).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Clone, PartialEq)]
 pub struct RangeOf(#[entities] pub Entity);

@@ -78,7 +78,7 @@ pub(super) fn warn_of_pairs(
             );
         }
         if is_overlay(camera) && OPAQUE.iter().any(has) {
-            warn_once!("an effect of Bevy on the whole picture makes the overlay {id} opaque");
+            warn_once!("a full-screen effect of Bevy makes the picture of the overlay {id} opaque");
         }
         let fades = lines.is_some_and(|lines| lines.fog == LineFog::Fade);
         if fades && !has_fog(camera) && FOGS.iter().any(has) {

@@ -6,7 +6,7 @@
 #import bevy_comics::depth::map::{DepthFrame, EMPTY}
 #import bevy_comics::effect::noise::{hash}
 
-struct Finish {
+struct Composite {
     // Fraction of the styled picture in the mix with the original, 0 to 1.
     weight: f32,
     // Width of the part that shows the original: physical pixels from the left edge
@@ -18,7 +18,7 @@ struct Finish {
 // Mixes the two pictures, or shows the original left of the split. Both are colours
 // multiplied by their opacity, and the opacity. `x` is in physical pixels from the left
 // edge of the viewport.
-fn compare(s: Finish, original: vec4<f32>, styled: vec4<f32>, x: f32) -> vec4<f32> {
+fn compare(s: Composite, original: vec4<f32>, styled: vec4<f32>, x: f32) -> vec4<f32> {
     let weight = select(s.weight, 0.0, x < s.split);
     return mix(original, styled, weight);
 }

@@ -10,8 +10,8 @@ use bevy::{
 /// Cameras with the same target, `Hdr` and `Msaa` draw to the same textures. Without a mask, the
 /// effects of the second camera would change the comic of the first one again.
 ///
-/// Lines are not masked: half of a line lies outside of its object. Effects that change all pixels
-/// are, as tones, colours, prints and paper.
+/// Lines are not masked, because half of a line lies outside its object. Effects that change all
+/// pixels are: tones, colours, prints and paper.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub enum StyleMask {

@@ -134,13 +134,13 @@ impl DebugView {
 
 /// The settings of a camera for the end of its pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Finish {
+pub(crate) struct Composite {
     pub weight: f32,
     /// Fraction of the viewport's width.
     pub split: f32,
 }
 
-impl Default for Finish {
+impl Default for Composite {
     fn default() -> Self {
         Self {
             weight: 1.0,
@@ -149,7 +149,7 @@ impl Default for Finish {
     }
 }
 
-impl Finish {
+impl Composite {
     pub fn new(weight: Option<&StyleWeight>, split: Option<&SplitView>) -> Self {
         Self {
             weight: weight.copied().unwrap_or_default().sanitized(),
@@ -158,8 +158,8 @@ impl Finish {
     }
 
     /// Packs the settings; `width` is that of the viewport in physical pixels.
-    pub fn uniform(self, width: u32) -> FinishUniform {
-        FinishUniform {
+    pub fn uniform(self, width: u32) -> CompositeUniform {
+        CompositeUniform {
             weight: self.weight,
             split: (self.split * width as f32).round(),
             unused: Vec2::ZERO,
@@ -167,16 +167,16 @@ impl Finish {
     }
 }
 
-/// The uniform: `Finish` in `composite.wgsl`.
+/// The uniform: `Composite` in `composite.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct FinishUniform {
+pub(crate) struct CompositeUniform {
     pub weight: f32,
     /// Physical pixels from the left edge of the viewport.
     pub split: f32,
     unused: Vec2,
 }
 
-/// Registers the components and the WGSL module of the finish.
+/// Registers the components and the WGSL modules of the composite.
 pub(crate) struct CompositePlugin;
 
 impl Plugin for CompositePlugin {

@@ -51,10 +51,9 @@ pub struct DepthMap {
     /// Distances that map to 0 and 1, and the scale between them.
     /// Default: [`DepthMapping::MinMax`].
     pub mapping: DepthMapping,
-    /// Exchanges near and far for the effects that read `D` as a gradient
-    /// (desaturation, colorization, the depth weight of black flats), so that the
-    /// foreground takes the atmosphere. Contours and outlines do not change.
-    /// Default: `false`. `true` is the literal reading of \[CS\] Eq. 6 to 11.
+    /// Exchanges near and far for the effects that read `D` as a gradient, such as desaturation and
+    /// colorization, so that the atmosphere is in the foreground. Contours and outlines do not
+    /// change. Default: `false`. `true` is the literal reading of \[CS\] Eq. 6 to 11.
     pub flip: bool,
     /// Distance from which on geometry counts as sky, in world units: it has no lines, is at the far end of the
     /// map and does not belong to the visible range. For skies and horizons that are meshes; single meshes

@@ -25,12 +25,12 @@ use crate::settings::{FieldRange, clamp_fields};
 /// stage out. While the range lags behind the scene, distances outside of it map to
 /// 0 or 1.
 ///
-/// A view that stands still ends with its own range, bit for bit, whatever it showed
-/// before: an end that rests beside what is visible, within the hysteresis, settles
-/// there. It waits until everything it saw for 4 seconds was on one side of it, then
-/// moves to the middle of that with a time constant of 2 seconds (or its own, if that is
-/// longer): at 60 frames per second by at most 1 % of the hysteresis per frame. If what
-/// is visible moves to and fro around the end, the end does not move at all.
+/// In a still view, the range settles to exactly that of the view, bit for bit, whatever was shown
+/// before. An end that hysteresis holds beside the visible geometry waits until everything that it
+/// saw for 4 seconds was on one side of it. Then it moves to the middle of that with a time
+/// constant of 2 seconds (or its own, if that is longer): at 60 frames per second by at most 1 % of
+/// the hysteresis per frame. If the geometry moves back and forth around the end, the end does not
+/// move.
 ///
 /// The state is one per camera and stays on the GPU. It starts with the first frame
 /// that shows geometry, and anew after a [`CameraCut`], when the size of the view

@@ -46,9 +46,9 @@ pub enum ComicsStage {
     FindLines,
     /// The pass that draws the ink of the lines.
     DrawLines,
-    /// The passes that draw the outlines of marked objects
+    /// The passes that draw the outlines of highlighted objects
     /// ([`SelectionOutline`](crate::SelectionOutline), [`XRayOutline`](crate::XRayOutline)).
-    MarkedObjects,
+    HighlightedObjects,
     /// An effect in the fused pass, by its name
     /// ([`Effect::NAME`](crate::Effect::NAME)); see also [`ComicsStage::of`].
     Effect(&'static str),
@@ -70,7 +70,7 @@ impl ComicsStage {
         Self::SearchTiles,
         Self::FindLines,
         Self::DrawLines,
-        Self::MarkedObjects,
+        Self::HighlightedObjects,
     ];
 
     /// The stage's name in reports and files: lower case, with spaces.
@@ -87,7 +87,7 @@ impl ComicsStage {
             Self::SearchTiles => "search tiles",
             Self::FindLines => "find lines",
             Self::DrawLines => "draw lines",
-            Self::MarkedObjects => "marked objects",
+            Self::HighlightedObjects => "highlighted objects",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
             Self::Stylize => "stylize",
         })

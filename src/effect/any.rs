@@ -203,7 +203,7 @@ pub struct EffectType {
     /// [`Effect::HALF_BOX`].
     pub half_box: bool,
     /// [`Effect::AUX_SCALAR`].
-    pub number: bool,
+    pub aux_scalar: bool,
     /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
     /// Creates an effect with default settings.
@@ -237,7 +237,7 @@ impl EffectType {
                 replaces: E::REPLACES,
                 view: E::VIEW,
                 half_box: E::HALF_BOX,
-                number: E::AUX_SCALAR,
+                aux_scalar: E::AUX_SCALAR,
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,

@@ -4,8 +4,7 @@ use bevy::math::{DVec3, Mat4, UVec2, UVec4, Vec2, Vec3};
 
 use crate::{clock::drawing_seed, lines::Sheet};
 
-/// What an effect is told about the view that it is drawn on: for its shader variants and its
-/// uniform.
+/// The view that an effect is drawn on, for the choice of its shader variants and for its uniform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EffectContext {

@@ -169,17 +169,17 @@ pub trait Effect:
         AffectedArea::Everywhere
     }
 
-    /// The largest distance in physical pixels, across or down, from its pixel at which
-    /// the effect's WGSL reads lines; `None` if it is not known. If all effects that read
-    /// lines know it, the fused pass defines `WITHOUT_LINES` where no line is that near:
-    /// `lines_at` finds no ink there. Default: `None`.
+    /// How far from its pixel the effect's WGSL reads lines, in physical pixels per axis; `None` if
+    /// that is not known. If all effects that read lines state it, the fused pass defines
+    /// `WITHOUT_LINES` where no line is that near, and `lines_at` finds no ink there. Default:
+    /// `None`.
     fn line_reach(&self, view: &EffectContext) -> Option<f32> {
         let _ = view;
         None
     }
 
-    /// What the effect changes about the lines of its camera. If several effects of a camera change
-    /// the same, the first one in the chain counts. Default: nothing.
+    /// What the effect changes about the lines of its camera. Where several effects of a camera
+    /// make the same kind of change, that of the first one in the chain applies. Default: nothing.
     fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
         let _ = view;
         LineModifiers::default()

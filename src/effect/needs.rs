@@ -54,7 +54,8 @@ bitflags! {
         /// would read the depth of many pixels besides their colours. In place of
         /// [`Needs::PICTURE`]: the first pass draws a texture of the viewport's size with 16
         /// bytes a pixel, which holds both. The WGSL says what the number is, see
-        /// [`Effect::AUX_SCALAR`](super::Effect::AUX_SCALAR). Of an effect that also has [`Needs::BOX_STATISTICS`], these count.
+        /// [`Effect::AUX_SCALAR`](super::Effect::AUX_SCALAR). An effect that also has
+        /// [`Needs::BOX_STATISTICS`] gets only the statistics.
         const AUX_SCALAR = 1 << 11;
         /// The two depths that divide what is visible into near, middle and far, by
         /// `bevy_comics::depth::view::depth_borders`. Counts the depths, and finds the borders in

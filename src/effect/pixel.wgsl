@@ -25,7 +25,7 @@ struct Pixel {
     saturation: f32,
     // Factors that DepthLayers has set, 0 to 1: of the darkness of hatching, and of the fraction of
     // screens that is seen as dots. 1 again in a later pass, see Needs::PICTURE.
-    prints: vec2<f32>,
+    print_factors: vec2<f32>,
     // How often the bands of tones split, and the factor of the distance of strokes: 0 and 1
     // unless an effect sets them, and again in a later pass.
     splits: f32,

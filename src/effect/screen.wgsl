@@ -4,7 +4,7 @@
 //
 // `at` are the coordinates of a pixel in cells of the screen, whose dots are at whole
 // numbers. `tone` is the fraction of the area that is printed, 0 to 1: the mean of the
-// coverage over a screen. `period` is the size of a cell in physical pixels.
+// coverage over a screen. `cell_size` is the size of a cell in physical pixels.
 
 const PI: f32 = 3.1415927;
 
@@ -30,29 +30,30 @@ fn sin_turn(x: f32) -> f32 {
 // Radius in pixels of discs of a tone that do not touch. An edge that is drawn as a ramp of one
 // pixel has pi / 12 square pixels more than the disc: its variance. Where the ramps from all sides
 // meet, the radius is cbrt(3 x^2) - 1/2; the polynomial is within 0.0007 pixels of it.
-fn free_radius(tone: f32, period: f32) -> f32 {
-    let x = period * sqrt(tone * (1.0 / PI));
+fn free_radius(tone: f32, cell_size: f32) -> f32 {
+    let x = cell_size * sqrt(tone * (1.0 / PI));
     let cone = -0.38683931 + x * (2.19049104 + x * (-1.63882075 + x * 0.87661645));
     return select(cone, sqrt(max(x * x - 1.0 / 12.0, 0.0)), x >= 0.57735027);
 }
 
 // Radius in pixels of the discs of a tone. Touching discs: fitted, with what the ramps of their
 // edges add.
-fn disc_radius(tone: f32, period: f32) -> f32 {
+fn disc_radius(tone: f32, cell_size: f32) -> f32 {
     if tone > TOUCH {
         let rest = (1.0 - tone) / (1.0 - TOUCH);
         let root = sqrt(rest);
-        return period * (0.70710678 - root * (0.2471 - 0.04 * root)) - 0.09 * rest / (period * period);
+        let touching = cell_size * (0.70710678 - root * (0.2471 - 0.04 * root));
+        return touching - 0.09 * rest / (cell_size * cell_size);
     }
-    return free_radius(tone, period);
+    return free_radius(tone, cell_size);
 }
 
 // A disc and the three next to the pixel. Edges that face each other add up; where discs
 // overlap, some of it is covered twice: fitted.
-fn disc(at: vec2<f32>, tone: f32, period: f32) -> f32 {
-    let radius = disc_radius(tone, period) + 0.5;
-    let own = abs(at - round(at)) * period;
-    let other = period - own;
+fn disc(at: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
+    let radius = disc_radius(tone, cell_size) + 0.5;
+    let own = abs(at - round(at)) * cell_size;
+    let other = cell_size - own;
     let near = clamp(radius - length(own), 0.0, 1.0);
     let beside = clamp(radius - length(vec2(other.x, own.y)), 0.0, 1.0);
     let below = clamp(radius - length(vec2(own.x, other.y)), 0.0, 1.0);
@@ -65,10 +66,10 @@ fn disc(at: vec2<f32>, tone: f32, period: f32) -> f32 {
 
 // Dots that grow into a chequerboard and leave holes: a threshold of a sum of cosines. `offset`:
 // from the middle of the cell, in cells, 0 to 1/2.
-fn checker(offset: vec2<f32>, tone: f32, period: f32) -> f32 {
+fn checker(offset: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     let waves = vec2(cos_turn(offset.x), cos_turn(offset.y));
     let height = 0.5 * (waves.x + waves.y);
-    let per_pixel = PI / period;
+    let per_pixel = PI / cell_size;
     // The ramp at the edge of a dot adds to it, that of a hole takes from the rest.
     let curved = clamp((0.5 - tone) * (1.0 / 0.11), -1.0, 1.0);
     let x = 1.0 - 2.0 * tone + curved * per_pixel * per_pixel * (1.0 / (6.0 * PI));
@@ -80,13 +81,13 @@ fn checker(offset: vec2<f32>, tone: f32, period: f32) -> f32 {
 
 // Discs in the lights, a chequerboard in the middle, round holes in the shadows
 // (Ostromoukhov and Hersch 1995 call it Euclidean). Discs and holes are those of tones up to 0.3:
-// only the nearest one reaches a pixel, from a period of 2.7 pixels on.
-fn euclidean(at: vec2<f32>, tone: f32, period: f32) -> f32 {
+// only the nearest one reaches a pixel, from a cell_size of 2.7 pixels on.
+fn euclidean(at: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     let offset = abs(at - round(at));
-    let middle = checker(offset, tone, period);
+    let middle = checker(offset, tone, cell_size);
     let dark = tone > 0.5;
-    let away = length(select(offset, 0.5 - offset, dark)) * period;
-    let radius = free_radius(select(tone, 1.0 - tone, dark), period);
+    let away = length(select(offset, 0.5 - offset, dark)) * cell_size;
+    let radius = free_radius(select(tone, 1.0 - tone, dark), cell_size);
     let round_part = clamp(radius + 0.5 - away, 0.0, 1.0);
     let ends = select(round_part, 1.0 - round_part, dark);
     return mix(ends, middle, clamp((0.35 - abs(tone - 0.5)) * (1.0 / 0.15), 0.0, 1.0));
@@ -125,17 +126,17 @@ fn diamonds_area(to: vec2<f32>, radius: f32) -> f32 {
 
 // Diamonds. A pixel is a square of its size that lies along the cell, whatever the angle: what it
 // covers is exact then, and so are tones where every cell has the same pixels.
-fn diamond(at: vec2<f32>, tone: f32, period: f32) -> f32 {
+fn diamond(at: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     let dark = tone > 0.5;
     // Beyond a half, the paper is left in diamonds at the corners of the cells.
     let placed = select(at, at + 0.5, dark);
     let offset = placed - round(placed);
     let radius = sqrt(0.5 * select(tone, 1.0 - tone, dark));
-    let low = offset - 0.5 / period;
-    let high = offset + 0.5 / period;
+    let low = offset - 0.5 / cell_size;
+    let high = offset + 0.5 / cell_size;
     let area = diamonds_area(high, radius) - diamonds_area(vec2(low.x, high.y), radius)
         - diamonds_area(vec2(high.x, low.y), radius) + diamonds_area(low, radius);
-    let covered = clamp(area * period * period, 0.0, 1.0);
+    let covered = clamp(area * cell_size * cell_size, 0.0, 1.0);
     return select(covered, 1.0 - covered, dark);
 }
 
@@ -151,16 +152,16 @@ fn grain_covers(tone: f32, thresholds: vec4<f32>) -> vec4<f32> {
 }
 
 // Of a tone or of what is left of it, the part that edges may take or add.
-const MOST_SPREAD: f32 = 0.9;
+const MOST_BLED: f32 = 0.9;
 
 // The tone at a place where the sheet has a height, -1 to 1: ink runs into valleys. Its mean over
-// all heights is the tone. `length`: of the edges in a cell, in periods; they are displaced by up
-// to `edge` periods.
-fn spread_tone(tone: f32, length: f32, edge: f32, height: f32) -> f32 {
-    return tone - min(length * edge, MOST_SPREAD * min(tone, 1.0 - tone)) * height;
+// all heights is the tone. `length`: of the edges in a cell, in cell sizes; they are displaced
+// by up to `edge` cell sizes.
+fn bled_tone(tone: f32, length: f32, edge: f32, height: f32) -> f32 {
+    return tone - min(length * edge, MOST_BLED * min(tone, 1.0 - tone)) * height;
 }
 
-// Length of the edges of discs in periods. Beyond TOUCH: fitted.
+// Length of the edges of discs in cell sizes. Beyond TOUCH: fitted.
 fn disc_edges(tone: f32) -> f32 {
     return min(2.0 * sqrt(PI * tone), 5.5 * sqrt(1.0 - tone));
 }

@@ -61,7 +61,7 @@ fn node_cover(s: Strokes, l: Lattice, node: vec2<i32>, away: vec2<f32>) -> f32 {
     let odd = vec2(node.x & 1, node.y & 1);
     // The new dot in the middle of four old ones is the first to grow.
     let turn = select(f32(1 + odd.y), 0.0, odd.x + odd.y == 2);
-    let share = select(clamp(l.grown - turn, 0.0, 1.0), 1.0, odd.x + odd.y == 0);
+    let fraction = select(clamp(l.grown - turn, 0.0, 1.0), 1.0, odd.x + odd.y == 0);
     let mark = mark_of_node(node, l.exponent, l.seed);
     // Three numbers from -1 to 1. Places are in the square inside the circle of the farthest.
     let random = vec3(f32(mark & 1023u), f32((mark >> 10u) & 1023u), f32(mark >> 20u));
@@ -69,7 +69,7 @@ fn node_cover(s: Strokes, l: Lattice, node: vec2<i32>, away: vec2<f32>) -> f32 {
     let full = l.radius * sqrt(1.0 + l.spread * number.z);
     let most = max(l.room - max(full, 0.5 * l.wide), 0.0);
     let stray = most * s.wobble * 0.70710678 * number.xy;
-    return disc_coverage(away - stray, l.right, l.down, l.wide, full * sqrt(share));
+    return disc_coverage(away - stray, l.right, l.down, l.wide, full * sqrt(fraction));
 }
 
 // Coverage by the dots of a lattice. `u`, `v`: two axes of its plane, at right angles; `seed`: also half of

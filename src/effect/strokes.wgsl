@@ -28,8 +28,8 @@ struct Strokes {
     // Darkness of a layer before the next one begins.
     layer_darkness: f32,
     // Lightness of the darkest hatching, and from which there is none.
-    shadows: f32,
-    highlights: f32,
+    solid_below: f32,
+    bare_above: f32,
     gamma: f32,
     // Number of tones besides none; 0: all.
     levels: f32,
@@ -163,14 +163,14 @@ fn layer_cover(s: Strokes, on: Surface, g: vec3<f32>, layer: u32, tone: f32) -> 
     var a = m[0];
     var b = m[1];
     var c = m[2];
-    var share = g.x;
+    var fraction = g.x;
     var other = b;
     var other_number = 1u;
     var third = c;
     let numbers = vec3(layer, (layer + 1u) % 3u, (layer + 2u) % 3u);
     var other_numbers = numbers.yzx;
     if layer == 1u {
-        share = g.x * g.y;
+        fraction = g.x * g.y;
         a = m[1];
         b = m[2];
         c = m[0];
@@ -178,7 +178,7 @@ fn layer_cover(s: Strokes, on: Surface, g: vec3<f32>, layer: u32, tone: f32) -> 
         other_number = 2u;
         third = m[0];
     } else if layer == 2u {
-        share = g.x * g.y * g.z;
+        fraction = g.x * g.y * g.z;
         a = m[2];
         b = m[0];
         c = m[1];
@@ -194,12 +194,12 @@ fn layer_cover(s: Strokes, on: Surface, g: vec3<f32>, layer: u32, tone: f32) -> 
         other_numbers = vec3(3u + 2u * pair, 4u + 2u * pair, 2u);
     }
     var light = 1.0;
-    if share > 0.0 {
-        let own = shared_tone(tone, share);
+    if fraction > 0.0 {
+        let own = shared_tone(tone, fraction);
         light = 1.0 - family_cover(s, on, mat3x3(a, b, c), numbers, layer, own);
     }
-    if share < 1.0 {
-        let rest = shared_tone(tone, 1.0 - share);
+    if fraction < 1.0 {
+        let rest = shared_tone(tone, 1.0 - fraction);
         let axes = mat3x3(other, third, a);
         light *= 1.0 - family_cover(s, on, axes, other_numbers, other_number, rest);
     }
@@ -229,7 +229,7 @@ fn hatched(s: Strokes, on: Surface, tone: f32) -> f32 {
 // Darkness of strokes at a lightness from 0 to 1.
 fn darkness(s: Strokes, light: f32) -> f32 {
     // 1 - smoothstep, but exact near 0, where a power below 1 shows what 1 - x rounds off.
-    let u = clamp((s.highlights - light) / (s.highlights - s.shadows), 0.0, 1.0);
+    let u = clamp((s.bare_above - light) / (s.bare_above - s.solid_below), 0.0, 1.0);
     let t = u * u * (3.0 - 2.0 * u);
     let tone = select(pow(max(t, 1e-20), s.gamma), 0.0, t <= 0.0);
     if s.levels > 0.0 {

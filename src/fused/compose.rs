@@ -34,7 +34,10 @@ fn fused_pass(types: &[&EffectType]) -> String {
                 text.push_str(RESTORE);
             }
             "//@boxes" => text.extend(types.iter().filter(|e| e.half_box).map(|e| boxes(e))),
-            "//@numbers" => text.extend(types.iter().filter(|e| e.number).map(|e| numbers(e))),
+            "//@aux_scalars" => {
+                let scalars = types.iter().filter(|e| e.aux_scalar);
+                text.extend(scalars.map(|effect| aux_scalar(effect)));
+            }
             "//@prints" => {
                 let prints = types.iter().filter(|e| e.stage == EffectStage::Print);
                 text.extend(prints.map(|effect| calls(effect)));
@@ -84,16 +87,16 @@ pub(super) fn boxes_of(name: &str) -> String {
     format!("BOXES_{}", definition(name))
 }
 
-/// The shader definition of the pass that draws numbers for an effect.
-pub(super) fn numbers_of(name: &str) -> String {
-    format!("NUMBERS_{}", definition(name))
+/// The shader definition of the pass that draws the numbers of an effect.
+pub(super) fn aux_scalar_of(name: &str) -> String {
+    format!("AUX_SCALAR_OF_{}", definition(name))
 }
 
-/// The call of the function that says what the numbers of an effect are.
-fn numbers(effect: &EffectType) -> String {
+/// The call of the function that says what the number of an effect is at a pixel.
+fn aux_scalar(effect: &EffectType) -> String {
     let number = call(effect, "_aux_scalar");
     guarded(
-        &numbers_of(effect.name),
+        &aux_scalar_of(effect.name),
         &format!("    number = {number};\n"),
     )
 }

@@ -49,7 +49,7 @@ impl DeviceLacks {
         if self.object_ids && cfg!(feature = "objects") {
             warn_once!(
                 "this device has too few storage buffers for object ids: edges between objects, line \
-                 styles of objects, sections, marks, screens that follow objects and depth of \
+                 styles of objects, sections, selection and x-ray outlines, screens that follow objects and depth of \
                  transparent meshes are not drawn"
             );
         }

@@ -2,9 +2,9 @@
 // picture once. compose.rs replaces the lines that begin with "//@" by one entry
 // for each registered effect.
 //
-// LAYER: the pass draws a texture of the viewport's size, in linear light, for a later pass.
+// EARLIER_PASS: the pass draws a texture of the viewport's size, in linear light, for a later pass.
 // CONTINUED: the pass starts from such a texture. See passes.rs.
-// DRAWS_NUMBERS: the pass draws such a texture with a number at each pixel, by an entry point of
+// DRAWS_AUX_SCALAR: the pass draws such a texture with a number at each pixel, by an entry point of
 // its own. AUX_SCALAR: the pass starts from that.
 // DRAWS_BOX_STATISTICS: the pass draws means over boxes of such a texture, by its own entry point.
 // INSIDE: all pixels that are drawn lie inside the viewport.
@@ -24,7 +24,7 @@
 #ifdef MASK
 #import bevy_comics::composite::mask::changed_fractions
 #endif
-#import bevy_comics::composite::{Finish, compare, difference, object_color, range_fraction}
+#import bevy_comics::composite::{Composite, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
 #import bevy_comics::lines::owner_plane::owner_weights
 #import bevy_comics::lines::layer_lines::{LineLayers, layer_ink}
@@ -37,7 +37,7 @@
 // browsers.
 struct Comics {
     view: View,
-    finish: Finish,
+    composite: Composite,
 #ifdef LINES
     lines_before: vec4<u32>,
     lines: Lines,
@@ -113,7 +113,7 @@ fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
     var p = before;
     p.inside = vec2<f32>(pixel - comics.view.viewport.xy);
     p.saturation = 1.0;
-    p.prints = vec2(1.0);
+    p.print_factors = vec2(1.0);
     p.splits = 0.0;
     p.spacing = 1.0;
     p.depth = vec2(1.0, 0.0);
@@ -254,32 +254,32 @@ fn after_effects(before: Pixel, pixel: vec2<i32>, place: vec2<f32>) -> Pixel {
 
 // What a pass draws for a later one. Larger numbers would become infinite. Later passes read each
 // pixel often: it is made finite once, here.
-fn layer_color(p: Pixel) -> vec4<f32> {
+fn pass_color(p: Pixel) -> vec4<f32> {
     let color = clamp(finite_color(p.color), vec3(-65504.0), vec3(65504.0));
     return vec4(color, clamp(finite(p.alpha), 0.0, 1.0));
 }
 
-#ifdef DRAWS_NUMBERS
+#ifdef DRAWS_AUX_SCALAR
 // The number of a pixel.
 fn number_of(p: Pixel) -> f32 {
     var number = 0.0;
-    //@numbers
+    //@aux_scalars
     return number;
 }
 
 @fragment
-fn numbered(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
+fn with_scalar(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let place = position.xy + vec2<f32>(comics.view.viewport.xy);
     let pixel = vec2<i32>(place);
     set_view(comics.view);
     let p = after_effects(before_effects(pixel), pixel, place);
-    return packed_number(layer_color(p), number_of(p));
+    return packed_number(pass_color(p), number_of(p));
 }
 #endif
 
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-#ifdef LAYER
+#ifdef EARLIER_PASS
     let place = position.xy + vec2<f32>(comics.view.viewport.xy);
 #else
     let place = position.xy;
@@ -294,17 +294,17 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
 #endif
     p = after_effects(p, pixel, place);
-#ifdef LAYER
-    return layer_color(p);
+#ifdef EARLIER_PASS
+    return pass_color(p);
 #else
 #ifdef DEBUG_VIEW
     p.color = srgb_decode(view_color(p, pixel));
     p.alpha = 1.0;
 #endif
     var result = vec4(p.color, p.alpha);
-#ifdef FINISH
+#ifdef COMPOSITE
     let opacity = clamp(finite(load_source(pixel).a), 0.0, 1.0);
-    result = compare(comics.finish, vec4(p.original, opacity), result, p.inside.x);
+    result = compare(comics.composite, vec4(p.original, opacity), result, p.inside.x);
 #endif
     return vec4(to_stored(result.rgb), result.a);
 #endif

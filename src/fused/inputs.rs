@@ -29,12 +29,12 @@ use crate::{
 
 /// Reads between the centres of pixels.
 #[derive(Resource)]
-pub(super) struct LayerSampler(pub Sampler);
+pub(super) struct PassSampler(pub Sampler);
 
-impl LayerSampler {
+impl PassSampler {
     pub fn new(device: &RenderDevice) -> Self {
         Self(device.create_sampler(&SamplerDescriptor {
-            label: Some("comics_layer"),
+            label: Some("comics_pass"),
             address_mode_u: AddressMode::ClampToEdge,
             address_mode_v: AddressMode::ClampToEdge,
             mag_filter: FilterMode::Linear,
@@ -46,7 +46,7 @@ impl LayerSampler {
 
 /// The textures and buffers that the services have prepared for the view in this
 /// frame.
-pub(super) type Found<'a> = (
+pub(super) type ViewInputs<'a> = (
     (SurfaceParts<'a>, Option<&'a ViewDepthTexture>),
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
@@ -56,27 +56,27 @@ pub(super) type Found<'a> = (
 /// What all passes of a view bind.
 pub(super) struct Inputs<'a> {
     pub entries: Vec<BindGroupEntry<'a>>,
-    pub sampler: &'a LayerSampler,
+    pub sampler: &'a PassSampler,
     pub binder: &'a Binder<'a>,
 }
 
 /// What the passes before a pass have drawn for it.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Before<'a> {
+pub(super) struct PreviousPass<'a> {
     pub picture: Option<&'a TextureView>,
     /// Means, or the picture with numbers.
-    pub words: Option<&'a TextureView>,
+    pub packed: Option<&'a TextureView>,
 }
 
 impl Inputs<'_> {
-    pub fn bind_group(&self, key: &StylizeKey, before: &Before) -> BindGroup {
+    pub fn bind_group(&self, key: &StylizeKey, before: &PreviousPass) -> BindGroup {
         let mut entries = self.entries.clone();
         if let Some(picture) = before.picture {
             entries.push(entry(9, picture.into_binding()));
             entries.push(entry(10, (&self.sampler.0).into_binding()));
         }
-        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
-            entries.push(entry(binding, words.into_binding()));
+        if let (Some(packed), Some(binding)) = (before.packed, key.reads.binding()) {
+            entries.push(entry(binding, packed.into_binding()));
         }
         (self.binder).group("comics_stylize", &key.layout(), &entries)
     }
@@ -86,7 +86,7 @@ impl Inputs<'_> {
 /// them is missing in this frame.
 pub(super) fn entries<'a>(
     key: &StylizeKey,
-    ((surfaces, drawn), range, lines, (ids, places)): Found<'a>,
+    ((surfaces, drawn), range, lines, (ids, places)): ViewInputs<'a>,
     object_styles: &'a ObjectStyleBuffer,
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {

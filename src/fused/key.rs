@@ -17,9 +17,9 @@ use bevy::{
 use super::{
     Plan,
     compose::{left_out, masked_by},
-    part::Part,
+    drawn_area::DrawnArea,
+    intermediate::{Boxes, Drawn, PACKED_FORMAT, PASS_FORMAT, Read},
     passes::{Pass, Reads},
-    words::{Boxes, Drawn, LAYER_FORMAT, Read, WORDS_FORMAT},
 };
 use crate::{
     composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},
@@ -78,24 +78,24 @@ pub(crate) struct StylizeKey {
     masked: Vec<(&'static str, bool)>,
     view: Option<DebugView>,
     map_flags: u32,
-    finish: bool,
+    composite: bool,
     same_size: bool,
-    pub part: Part,
-    /// The pass starts from a picture of an earlier one, and draws one for a later one.
+    pub area: DrawnArea,
+    /// The pass starts from a picture of an earlier one; it draws one for a later one.
     pub continued: bool,
-    pub layer: bool,
+    pub is_earlier: bool,
     pub draws: Drawn,
     pub reads: Read,
     /// All pixels that are drawn lie inside the viewport.
     inside: bool,
-    /// Effects that are left out of [`Part::Base`] or belong to other passes, and whether
+    /// Effects that are left out of [`DrawnArea::Base`] or belong to other passes, and whether
     /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
 }
 
 impl StylizeKey {
-    pub fn new(plan: &Plan, inputs: &KeyInputs, facts: &EffectContext) -> Self {
+    pub fn new(plan: &Plan, inputs: &KeyInputs, context: &EffectContext) -> Self {
         let needs = plan.needs();
         let depth = needs.intersects(Needs::MAP | Needs::DEPTH);
         let reads_pixels = depth || needs.intersects(Needs::NORMALS | Needs::IDS);
@@ -103,7 +103,7 @@ impl StylizeKey {
         let mut variants = Variants::default();
         for effect in plan.drawn() {
             variants.effect = effect.effect_type().name;
-            effect.any_variants(facts, &mut variants);
+            effect.any_variants(context, &mut variants);
         }
         variants.effect = "";
         Self {
@@ -123,7 +123,7 @@ impl StylizeKey {
             edge_styles: lines && plan.lines.is_some_and(|lines| lines.has_edge_styles()),
             layer_ink: lines
                 && plan
-                    .line_modifiers(facts)
+                    .line_modifiers(context)
                     .layers
                     .is_some_and(|p| p.has_colors()),
             object_styles: (lines && plan.object_styles)
@@ -132,25 +132,26 @@ impl StylizeKey {
             unstyled_colors: plan.unstyled,
             unstyled_print: plan.unstyled,
             own_pixels: plan.own_pixels,
-            mask_reach: mask_reach(plan, inputs.widest_object, facts),
+            mask_reach: mask_reach(plan, inputs.widest_object, context),
             beyond: plan.beyond,
             masked_colors: plan.is_masked(),
             masked_print: plan.is_masked(),
-            masked: masked(plan, facts),
+            masked: masked(plan, context),
             view: plan.view,
             map_flags: if needs.contains(Needs::MAP) {
                 inputs.view.depth.flags
             } else {
                 0
             },
-            finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
+            composite: plan.composite.weight < 1.0 || plan.composite.split > 0.0,
             same_size: reads_pixels && inputs.view.depth_scale == Vec2::ONE,
-            part: Part::Whole,
+            area: DrawnArea::Whole,
             continued: false,
-            layer: false,
+            is_earlier: false,
             draws: Drawn::Picture,
             reads: Read::Picture,
-            inside: facts.viewport.xy() == UVec2::ZERO && facts.viewport.zw() == facts.target_size,
+            inside: context.viewport.xy() == UVec2::ZERO
+                && context.viewport.zw() == context.target_size,
             left_out: vec![],
             without_lines: false,
         }
@@ -159,17 +160,17 @@ impl StylizeKey {
     /// Whether all effects draw over the picture, and their sum can be blended over it.
     /// Not if the picture may have values that are no numbers: only a pass that reads the
     /// picture replaces them.
-    pub fn can_overlay(&self, plan: &Plan, facts: &EffectContext) -> bool {
+    pub fn can_overlay(&self, plan: &Plan, context: &EffectContext) -> bool {
         let bytes = matches!(self.format.block_copy_size(None), Some(..=4));
         let plain = bytes
             && self.format != TextureFormat::Rg11b10Ufloat
             && self.view.is_none()
-            && !self.finish
+            && !self.composite
             && !self.continued
             && self.reads == Read::Picture
             && !self.reads_owners();
         let local =
-            |effect: &dyn AnyEffect| effect.any_affected_area(facts) != AffectedArea::Everywhere;
+            |effect: &dyn AnyEffect| effect.any_affected_area(context) != AffectedArea::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
     }
 
@@ -182,8 +183,8 @@ impl StylizeKey {
         };
         let others = drawn().filter(|(i, _)| !inside(i));
         Self {
-            format: if pass.layer {
-                LAYER_FORMAT
+            format: if pass.is_earlier {
+                PASS_FORMAT
             } else {
                 self.format
             },
@@ -191,16 +192,16 @@ impl StylizeKey {
             unstyled_print: self.unstyled_print && has(|stage| stage == EffectStage::Print),
             masked_colors: self.masked_colors && has(|stage| stage <= EffectStage::Color),
             masked_print: self.masked_print && has(|stage| stage == EffectStage::Print),
-            view: self.view.filter(|_| !pass.layer),
-            finish: self.finish && !pass.layer,
-            continued: pass.continued && !matches!(pass.reads, Some(Reads::Numbers(_))),
-            layer: pass.layer,
+            view: self.view.filter(|_| !pass.is_earlier),
+            composite: self.composite && !pass.is_earlier,
+            continued: pass.continued && !matches!(pass.reads, Some(Reads::AuxScalar(_))),
+            is_earlier: pass.is_earlier,
             reads: match pass.reads {
-                Some(Reads::Means(_)) => Read::Means,
-                Some(Reads::Numbers(_)) => Read::WithScalar,
+                Some(Reads::BoxStatistics(_)) => Read::Means,
+                Some(Reads::AuxScalar(_)) => Read::WithScalar,
                 None => Read::Picture,
             },
-            inside: self.inside || pass.layer,
+            inside: self.inside || pass.is_earlier,
             left_out: others
                 .map(|(_, effect)| effect.effect_type().name)
                 .collect(),
@@ -209,26 +210,31 @@ impl StylizeKey {
     }
 
     /// The key of a pass that draws its picture with the numbers of an effect.
-    pub fn numbered(&self, effect: &'static str) -> Self {
+    pub fn with_scalar(&self, effect: &'static str) -> Self {
         Self {
-            format: WORDS_FORMAT,
+            format: PACKED_FORMAT,
             draws: Drawn::WithScalar(effect),
             ..self.clone()
         }
     }
 
     /// The keys of the passes that draw the means for this one, for an effect.
-    pub fn means_for(&self, plan: &Plan, effect: &'static str, facts: &EffectContext) -> [Self; 2] {
+    pub fn means_for(
+        &self,
+        plan: &Plan,
+        effect: &'static str,
+        context: &EffectContext,
+    ) -> [Self; 2] {
         let found = plan.drawn().find(|e| e.effect_type().name == effect);
-        let reach = found.and_then(|effect| effect.any_max_radius(facts));
+        let reach = found.and_then(|effect| effect.any_max_radius(context));
         let boxes = Boxes { effect, reach };
         let rows = (Drawn::Across(boxes), Read::Picture);
         [rows, (Drawn::Down(boxes), Read::Means)].map(|(draws, reads)| Self {
-            format: WORDS_FORMAT,
+            format: PACKED_FORMAT,
             view: None,
-            finish: false,
+            composite: false,
             continued: true,
-            layer: true,
+            is_earlier: true,
             inside: true,
             draws,
             reads,
@@ -241,20 +247,20 @@ impl StylizeKey {
         self.draws.entry_point()
     }
 
-    /// The key of another part of the pass.
-    pub fn with_part(&self, part: Part) -> Self {
+    /// The key of the same pass with another drawn area.
+    pub fn with_area(&self, area: DrawnArea) -> Self {
         Self {
-            part,
+            area,
             ..self.clone()
         }
     }
 
-    /// The key of [`Part::Base`], without these effects and perhaps without lines.
+    /// The key of [`DrawnArea::Base`], without these effects and perhaps without lines.
     pub fn base(&self, left_out: &[&'static str], without_lines: bool) -> Self {
         Self {
             left_out: [&self.left_out, left_out].concat(),
             without_lines,
-            ..self.with_part(Part::Base)
+            ..self.with_area(DrawnArea::Base)
         }
     }
 
@@ -362,10 +368,10 @@ impl StylizeKey {
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.reads_owners(), "LINE_OWNERS"),
-            (self.surface && self.part != Part::Base, "SURFACE_LINES"),
-            (self.edge_styles && self.part != Part::Base, "EDGE_STYLES"),
+            (self.surface && self.area != DrawnArea::Base, "SURFACE_LINES"),
+            (self.edge_styles && self.area != DrawnArea::Base, "EDGE_STYLES"),
             (self.layer_ink, "IN_LAYERS"),
-            (self.layer_ink && self.part != Part::Base, "LAYER_INK"),
+            (self.layer_ink && self.area != DrawnArea::Base, "LAYER_INK"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
             (self.places(), "OBJECT_DEPTHS"),
@@ -376,13 +382,13 @@ impl StylizeKey {
             (self.masked_colors, "MASKED_COLORS"),
             (self.masked_print, "MASKED_PRINT"),
             (self.continued, "CONTINUED"),
-            (self.layer, "LAYER"),
+            (self.is_earlier, "EARLIER_PASS"),
             (self.inside, "INSIDE"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.blue_noise(), "BLUE_NOISE"),
             (self.same_size, "SAME_SIZE"),
-            (self.finish, "FINISH"),
-            (self.part.is_overlay(), "OVERLAY"),
+            (self.composite, "COMPOSITE"),
+            (self.area.is_overlay(), "OVERLAY"),
             (self.without_lines, "WITHOUT_LINES"),
         ]
         .into_iter()
@@ -414,12 +420,12 @@ impl StylizeKey {
         };
         let fragment = ShaderStages::FRAGMENT;
         let mut entries = vec![uniform_buffer_sized(false, None).build(1, fragment)];
-        if !self.part.is_overlay() {
+        if !self.area.is_overlay() {
             entries.push(texture_2d(unfilterable).build(0, fragment));
         }
-        let layer = texture_2d(TextureSampleType::Float { filterable: true });
+        let picture = texture_2d(TextureSampleType::Float { filterable: true });
         let between = sampler(SamplerBindingType::Filtering);
-        let words = texture_2d(TextureSampleType::Uint);
+        let packed = texture_2d(TextureSampleType::Uint);
         let optional = [
             (self.depth, prepass(2)),
             (self.reads_range(), range_entry()),
@@ -429,9 +435,9 @@ impl StylizeKey {
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),
             (self.places(), object_depths_entry()),
-            (self.continued, layer.build(9, fragment)),
+            (self.continued, picture.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
-            (self.blue_noise(), words.clone().build(11, fragment)),
+            (self.blue_noise(), packed.clone().build(11, fragment)),
             (self.reads_drawn_depth(), prepass(DRAWN_DEPTH_BINDING)),
         ];
         entries.extend(
@@ -439,24 +445,24 @@ impl StylizeKey {
                 .into_iter()
                 .filter_map(|(on, entry)| on.then_some(entry)),
         );
-        entries.extend(self.reads.binding().map(|at| words.build(at, fragment)));
+        entries.extend(self.reads.binding().map(|at| packed.build(at, fragment)));
         BindGroupLayoutDescriptor::new("comics_stylize", &entries)
     }
 }
 
 /// How far the ink of lines may lie from their objects in pixels, if [`OwnPixels::Ids`] are read.
-fn mask_reach(plan: &Plan, widest_object: f32, facts: &EffectContext) -> u32 {
+fn mask_reach(plan: &Plan, widest_object: f32, context: &EffectContext) -> u32 {
     let lines = plan
         .lines
         .filter(|_| plan.own_pixels == Some(OwnPixels::Ids));
     let widest = (widest_object, plan.vertex_widths);
-    let reach = |lines: Outlines| lines.reach(facts.scale_factor, widest, facts.sheet);
+    let reach = |lines: Outlines| lines.reach(context.scale_factor, widest, context.sheet);
     lines.map_or(2, |lines| reach(lines).clamp(1, 32) as u32)
 }
 
 /// The effects that come after prints, where effects change only some pixels; and whether they draw
 /// lines.
-fn masked(plan: &Plan, facts: &EffectContext) -> Vec<(&'static str, bool)> {
+fn masked(plan: &Plan, context: &EffectContext) -> Vec<(&'static str, bool)> {
     if !plan.is_masked() {
         return vec![];
     }
@@ -464,7 +470,7 @@ fn masked(plan: &Plan, facts: &EffectContext) -> Vec<(&'static str, bool)> {
         .drawn()
         .filter(|effect| effect.effect_type().stage > EffectStage::Print);
     let masked = |effect: &dyn AnyEffect| {
-        let is_line = effect.any_affected_area(facts) != AffectedArea::Everywhere;
+        let is_line = effect.any_affected_area(context) != AffectedArea::Everywhere;
         (effect.effect_type().name, is_line)
     };
     later.map(masked).collect()

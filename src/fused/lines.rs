@@ -26,7 +26,7 @@ pub(super) fn line_reach(plan: &Plan, view: &EffectContext) -> Option<f32> {
 /// The jumps of the depth map that effects of the plan are limited to. `None` also if
 /// they are not looked for: in multisampled views, in views whose main pass has a
 /// resolution of its own, beside faithful lines, and under a debug view.
-pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &EffectContext) -> Option<MapJumps> {
+pub(super) fn map_jumps(plan: &Plan, scene: &Scene, context: &EffectContext) -> Option<MapJumps> {
     let (_, samples) = scene.depth?;
     let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
     let has_window = samples == 1 && scene.main_pass_size.is_none();
@@ -35,7 +35,7 @@ pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &EffectContext) -> Op
     }
     let jumps = plan
         .drawn()
-        .filter_map(|effect| match effect.any_affected_area(facts) {
+        .filter_map(|effect| match effect.any_affected_area(context) {
             AffectedArea::AtJumps(jumps) => Some(jumps),
             _ => None,
         });
@@ -45,7 +45,7 @@ pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &EffectContext) -> Op
 /// The request for the lines of a plan; `None` if there is nothing to find.
 pub(super) fn line_request(
     view: &ViewPlan,
-    (plan, facts): (&Plan, &EffectContext),
+    (plan, context): (&Plan, &EffectContext),
     scene: &Scene,
     (uniform, jumps): (ViewUniform, Option<MapJumps>),
 ) -> Option<LineRequest> {
@@ -57,7 +57,7 @@ pub(super) fn line_request(
         0.0
     };
     let widest = (widest_object, plan.vertex_widths);
-    let modifiers = plan.line_modifiers(facts);
+    let modifiers = plan.line_modifiers(context);
     Some(LineRequest {
         boil: settings.boil.uniform(
             view.scale_factor,
@@ -68,19 +68,19 @@ pub(super) fn line_request(
         fog: plan.fog.then(|| fog(view, settings.fog)),
         fade: modifiers
             .fade
-            .map(|fade| fade.uniform(facts.depth_axis, facts.depth_reference)),
+            .map(|fade| fade.uniform(context.depth_axis, context.depth_reference)),
         middle: modifiers.fade.is_some_and(|fade| fade.distance.is_none())
             && plan.needs().contains(Needs::MIDDLE_DEPTH),
         layers: modifiers.layers,
         simplification: modifiers.simplification,
-        sheet: sheet(facts),
-        reach: settings.reach(view.scale_factor, widest, facts.sheet),
+        sheet: sheet(context),
+        reach: settings.reach(view.scale_factor, widest, context.sheet),
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         sections: plan.sections,
         object_styles: plan.object_styles,
         widths: plan.draws_widths(),
-        line_reach: line_reach(plan, facts).unwrap_or(0.0),
+        line_reach: line_reach(plan, context).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,
         ..plain_request(view, settings, scene, uniform)?
@@ -122,7 +122,7 @@ pub(super) fn plain_request(
         jitter: scene.jitter,
         reach: 0,
         steps: settings.steps(grid_scale),
-        specks: settings.min_length(grid_scale),
+        min_length: settings.min_length(grid_scale),
         extension: settings.extension(grid_scale),
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: false,
@@ -144,10 +144,10 @@ fn fog(view: &ViewPlan, lines: LineFog) -> FogUniform {
 }
 
 /// What lines are drawn on.
-fn sheet(facts: &EffectContext) -> SheetUniform {
-    let origin = facts.viewport.xy().as_vec2();
+fn sheet(context: &EffectContext) -> SheetUniform {
+    let origin = context.viewport.xy().as_vec2();
     let uniform = |sheet: Sheet| sheet.uniform(origin);
-    facts.sheet.map(uniform).unwrap_or_default()
+    context.sheet.map(uniform).unwrap_or_default()
 }
 
 /// Whether the engine's motion vectors can be read.
@@ -160,24 +160,26 @@ fn memory_request(view: &ViewPlan, settings: &Outlines, scene: &Scene) -> Option
     let is_jittered = scene.jitter.is_some() && has_motion(scene);
     let uses_history = settings.history_weight > 0.0 && !settings.boil.moves();
     (is_jittered && uses_history).then_some(MemoryRequest {
-        share: 1.0 - settings.history_weight,
+        blend_factor: 1.0 - settings.history_weight,
         cuts: view.cuts,
     })
 }
 
 impl Plan {
     /// What the effects change about lines.
-    pub fn line_modifiers(&self, facts: &EffectContext) -> LineModifiers {
-        let effects = self.drawn().map(|effect| effect.any_line_modifiers(facts));
+    pub fn line_modifiers(&self, context: &EffectContext) -> LineModifiers {
+        let effects = self
+            .drawn()
+            .map(|effect| effect.any_line_modifiers(context));
         effects.fold(LineModifiers::default(), LineModifiers::or)
     }
 
     /// Whether the widths of lines are drawn with the ids of objects.
     pub fn draws_widths(&self) -> bool {
-        let presses = self
+        let has_pressure = self
             .lines
             .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
-        self.has_ids() && (presses || self.vertex_widths)
+        self.has_ids() && (has_pressure || self.vertex_widths)
     }
 
     /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical

@@ -1,4 +1,4 @@
-//! Turns the plan of a view into requests for the lines of its marked objects.
+//! Turns the plan of a view into requests for the lines of its highlighted objects.
 
 use bevy::{
     camera::CompositingSpace,
@@ -29,7 +29,7 @@ pub(crate) struct MarkPipelines<'w> {
     pipeline: Res<'w, MarkPipeline>,
 }
 
-/// The requests for the lines of the marked objects of a view.
+/// The requests for the lines of the highlighted objects of a view.
 pub(super) struct MarkRequests {
     layer: LayerRequest,
     lines: (LineRequest, LinePasses),
@@ -71,7 +71,7 @@ impl MarkPipelines<'_> {
     }
 }
 
-/// The request for the lines of marked objects. `widest`: their largest width in logical
+/// The request for the lines of highlighted objects. `widest`: their largest width in logical
 /// pixels.
 fn request(
     view: &ViewPlan,
@@ -111,7 +111,7 @@ impl MarkRequests {
     }
 }
 
-/// Removes the requests for the lines of marked objects.
+/// Removes the requests for the lines of highlighted objects.
 pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
     if let Some(layer) = layer {
         commands.entity(layer).despawn();

@@ -7,16 +7,17 @@ mod compiling;
 mod compose;
 mod context;
 mod device;
+mod drawn_area;
+mod earlier_passes;
 mod errors;
 mod inputs;
+mod intermediate;
 mod key;
-mod layers;
 mod lines;
 #[cfg(feature = "objects")]
 mod marks;
 mod missing;
 mod object_depths;
-mod part;
 mod pass;
 mod passes;
 mod plan;
@@ -26,7 +27,6 @@ mod reasons;
 mod requests;
 mod scene;
 mod view_plan;
-mod words;
 
 pub(crate) use device::DeviceLacks;
 pub(crate) use plan::Plan;

@@ -12,18 +12,18 @@ use crate::{
 /// What the effects of a plan ask for that treat objects as a whole.
 pub(super) fn object_depths(
     (plan, view): (&Plan, &ViewPlan),
-    facts: &EffectContext,
+    context: &EffectContext,
     uniform: ViewUniform,
     extracted: &ExtractedView,
 ) -> Option<ObjectDepthRequest> {
     let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
     wanted.then(|| ObjectDepthRequest {
         eye: ObjectEye {
-            place: facts.eye,
+            place: context.eye,
             orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
             forward: *extracted.world_from_view.forward(),
             forgets: 0,
-            axis: facts.depth_axis,
+            axis: context.depth_axis,
             spare: Vec2::ZERO,
             view: uniform,
         },

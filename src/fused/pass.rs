@@ -20,10 +20,10 @@ use bevy::{
 
 use super::{
     blue_noise::BlueNoise,
+    earlier_passes::{EarlierPasses, PassTextures, described},
     errors::ShaderErrors,
-    inputs::{Inputs, LayerSampler, entries},
+    inputs::{Inputs, PassSampler, entries},
     key::StylizeKey,
-    layers::{Layers, ViewLayers, described},
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
@@ -60,8 +60,8 @@ impl SpecializedRenderPipeline for StylizePipeline {
     type Key = StylizeKey;
 
     fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
-        let (vertex, primitive) = vertices(key.part.is_tiled(), &self.fullscreen, &self.tile);
-        let overlay = key.part.is_overlay();
+        let (vertex, primitive) = vertices(key.area.is_tiled(), &self.fullscreen, &self.tile);
+        let overlay = key.area.is_overlay();
         RenderPipelineDescriptor {
             label: Some("comics_stylize".into()),
             layout: vec![key.layout()],
@@ -89,7 +89,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
 /// `PRINTS`: draws the views whose colours are printed, the others otherwise.
 pub(super) fn stylize<const PRINTS: bool>(
     view: ViewQuery<(
-        (&ViewTarget, &FusedRequest, &ViewFused, Option<&ViewLayers>),
+        (&ViewTarget, &FusedRequest, &ViewFused, Option<&PassTextures>),
         (
             (
                 (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
@@ -100,20 +100,20 @@ pub(super) fn stylize<const PRINTS: bool>(
             (Option<&ViewObjectIds>, Option<&ObjectDepths>),
         ),
     )>,
-    (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
+    (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<PassSampler>),
     blue_noise: Res<BlueNoise>,
     (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
     binder: Binder,
     mut ctx: RenderContext,
 ) {
-    let ((target, request, fused, layers), found) = view.into_inner();
+    let ((target, request, fused, textures), found) = view.into_inner();
     if request.plan.runs_after_anti_aliasing() != PRINTS {
         return;
     }
     let (_, _, lines, _) = found;
     let cache = &*binder.cache;
-    let layers = Layers::new(cache, request, layers);
-    let (Some(draws), Some(layers)) = (Draws::new(cache, request, lines), layers) else {
+    let earlier = EarlierPasses::new(cache, request, textures);
+    let (Some(draws), Some(earlier)) = (Draws::new(cache, request, lines), earlier) else {
         errors.report(cache, request, &ledger);
         return pass_through(request, &ledger, SkipReason::PipelineNotReady);
     };
@@ -127,7 +127,7 @@ pub(super) fn stylize<const PRINTS: bool>(
         Err(reason) => return pass_through(request, &ledger, reason),
     };
     entries.push(entry(1, fused.uniform.as_entire_binding()));
-    let destination = if request.key.part.is_overlay() {
+    let destination = if request.key.area.is_overlay() {
         target.main_texture_view()
     } else {
         let post = target.post_process_write();
@@ -142,7 +142,7 @@ pub(super) fn stylize<const PRINTS: bool>(
         sampler: &sampler,
         binder: &binder,
     };
-    let before = layers.record(&mut ctx, &inputs);
+    let before = earlier.record(&mut ctx, &inputs);
     let group = inputs.bind_group(&request.key, &before);
     draws.record(&mut ctx, destination, &group, request);
     span.end(ctx.command_encoder());
@@ -169,7 +169,7 @@ impl<'a> Draws<'a> {
             Some(base) => Some(cache.get_render_pipeline(base)?),
             None => None,
         };
-        let tiles = if request.key.part.is_tiled() {
+        let tiles = if request.key.area.is_tiled() {
             Some(lines?.tiles()?)
         } else {
             None
@@ -189,7 +189,7 @@ impl<'a> Draws<'a> {
         request: &FusedRequest,
     ) {
         // All pixels are drawn, except in an overlay.
-        let load = if request.key.part.is_overlay() {
+        let load = if request.key.area.is_overlay() {
             LoadOp::Load
         } else {
             LoadOp::default()
@@ -205,7 +205,7 @@ impl<'a> Draws<'a> {
         pass.set_pipeline(self.pipeline);
         match self.tiles {
             Some(tiles) => {
-                let [x, y, width, height] = request.facts.viewport.as_vec4().to_array();
+                let [x, y, width, height] = request.context.viewport.as_vec4().to_array();
                 pass.set_viewport(x, y, width, height, 0.0, 1.0);
                 tiles.draw(&mut pass, TileList::Inked);
             }

@@ -14,7 +14,7 @@ pub(super) struct Pass {
     /// The pass starts from the picture that the one before has drawn.
     pub continued: bool,
     /// Draws that picture for the next pass; else the view's picture.
-    pub layer: bool,
+    pub is_earlier: bool,
     /// What its first effect reads besides the picture before it.
     pub reads: Option<Reads>,
 }
@@ -23,9 +23,9 @@ pub(super) struct Pass {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reads {
     /// Means over boxes of that picture.
-    Means(&'static str),
+    BoxStatistics(&'static str),
     /// A number of its own at every pixel.
-    Numbers(&'static str),
+    AuxScalar(&'static str),
 }
 
 /// The passes of a plan, in order: one, and one more for each effect that reads the picture
@@ -50,7 +50,7 @@ pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
         .map(|(i, (start, end))| Pass {
             effects: start..end,
             continued: i > 0,
-            layer: i < last,
+            is_earlier: i < last,
             reads: reads(plan, start).filter(|_| i > 0),
         })
         .collect()
@@ -67,9 +67,9 @@ fn reads(plan: &Plan, at: usize) -> Option<Reads> {
     let effect = plan.drawn().nth(at)?;
     let (needs, of) = (effect.any_needs(), effect.effect_type());
     if needs.contains(Needs::BOX_STATISTICS) {
-        of.half_box.then_some(Reads::Means(of.name))
+        of.half_box.then_some(Reads::BoxStatistics(of.name))
     } else if needs.contains(Needs::AUX_SCALAR) {
-        of.number.then_some(Reads::Numbers(of.name))
+        of.aux_scalar.then_some(Reads::AuxScalar(of.name))
     } else {
         None
     }
@@ -131,7 +131,7 @@ mod tests {
         let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
         passes(&plan.expect("a plan"))
             .into_iter()
-            .map(|pass| (pass.effects, pass.continued, pass.layer))
+            .map(|pass| (pass.effects, pass.continued, pass.is_earlier))
             .collect()
     }
 
@@ -175,7 +175,7 @@ mod tests {
             let passes = passes(&plan.expect("a plan"));
             passes.iter().map(|pass| pass.reads).collect::<Vec<_>>()
         };
-        let means = Some(Reads::Means("paint"));
+        let means = Some(Reads::BoxStatistics("paint"));
         assert_eq!(reads(PaintKernel::Box), [None, means, None]);
         assert_eq!(reads(PaintKernel::Anisotropic), [None; 3]);
     }

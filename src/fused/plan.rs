@@ -8,7 +8,7 @@ use bevy::ecs::{entity::Entity, world::EntityRef};
 
 use super::device::DeviceLacks;
 use crate::{
-    composite::{BeyondPrepass, DebugView, Finish, OwnPixels, SplitView, StyleWeight},
+    composite::{BeyondPrepass, Composite, DebugView, OwnPixels, SplitView, StyleWeight},
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::SkipReason,
     lines::{CreaseSource, Creases, LineFog, Outlines, Silhouettes, has_fog},
@@ -78,7 +78,7 @@ pub(crate) struct Plan {
     /// Effects change only the pixels that the camera has drawn.
     pub own_pixels: Option<OwnPixels>,
     pub beyond: BeyondPrepass,
-    pub finish: Finish,
+    pub composite: Composite,
     /// The debug view that replaces the picture.
     pub view: Option<DebugView>,
 }
@@ -110,7 +110,7 @@ impl Plan {
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
             beyond: camera.get().copied().unwrap_or_default(),
-            finish: Finish::new(camera.get::<StyleWeight>(), camera.get::<SplitView>()),
+            composite: Composite::new(camera.get::<StyleWeight>(), camera.get::<SplitView>()),
             view: camera.get::<DebugView>().copied().filter(|view| {
                 let known = |name| types.iter().any(|t| t.name == name && t.view.is_some());
                 match view {
@@ -125,7 +125,7 @@ impl Plan {
             return None;
         }
         plan.show(types);
-        if plan.view.is_none() && (plan.finish.weight == 0.0 || plan.finish.split >= 1.0) {
+        if plan.view.is_none() && (plan.composite.weight == 0.0 || plan.composite.split >= 1.0) {
             plan.effects.clear();
             plan.left_out = types
                 .iter()
@@ -182,7 +182,7 @@ impl Plan {
         let Some(view) = self.view else {
             return;
         };
-        self.finish.weight = 1.0;
+        self.composite.weight = 1.0;
         let DebugView::Effect(name) = view else {
             return;
         };
@@ -441,7 +441,7 @@ impl Plan {
 
     pub fn needs_normals(&self) -> bool {
         let lines = self.lines;
-        lines.is_some_and(|lines| lines.finds_by_normals() || lines.weighs_by_normals())
+        lines.is_some_and(|lines| lines.finds_by_normals() || lines.needs_normals())
             || self.needs().contains(Needs::NORMALS)
             // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
             || (self.fades && self.needs_depth())
@@ -450,8 +450,8 @@ impl Plan {
     /// Whether the ids of objects are drawn for this camera.
     pub fn draws_ids(&self) -> bool {
         let lines = self.lines.is_some_and(|lines| {
-            let weighs = lines.silhouettes.is_some() && lines.weight.reads_ids();
-            lines.objects.is_some() || self.object_styles || self.sections || weighs
+            let needs_objects = lines.silhouettes.is_some() && lines.weight.reads_ids();
+            lines.objects.is_some() || self.object_styles || self.sections || needs_objects
         });
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
         self.has_ids() && ids

@@ -26,9 +26,9 @@ use bevy::{
 use super::{
     blue_noise::BlueNoise,
     choose::choose_plans,
+    earlier_passes::prepare_pass_textures,
     errors::{ShaderErrors, file_path},
-    inputs::LayerSampler,
-    layers::prepare_layers,
+    inputs::PassSampler,
     pass::{StylizePipeline, stylize},
     prepare::{ViewFused, prepare_fused_pass},
 };
@@ -104,7 +104,7 @@ impl FusedPlugin {
                 Render,
                 (
                     choose_plans.in_set(PrepareComics::Choose),
-                    (prepare_fused_pass, prepare_layers).in_set(PrepareComics::Fused),
+                    (prepare_fused_pass, prepare_pass_textures).in_set(PrepareComics::Fused),
                 ),
             )
             .add_systems(
@@ -141,6 +141,6 @@ fn init_pipeline(
         commands.entity(view).remove::<ViewFused>();
     }
     commands.insert_resource(BlueNoise::default());
-    commands.insert_resource(LayerSampler::new(&device));
+    commands.insert_resource(PassSampler::new(&device));
     commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone(), &assets));
 }

@@ -29,14 +29,14 @@ pub(crate) struct FusedRequest {
     pub camera: Entity,
     pub plan: Arc<Plan>,
     /// The passes before the last one.
-    pub layers: Vec<Layer>,
+    pub earlier: Vec<EarlierPassRequest>,
     pub key: StylizeKey,
     pub pipeline: CachedRenderPipelineId,
-    /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
+    /// Draws all pixels before the tiles of `pipeline`, see [`DrawnArea::Base`].
     ///
-    /// [`Part::Base`]: super::part::Part::Base
+    /// [`DrawnArea::Base`]: super::drawn_area::DrawnArea::Base
     pub base: Option<CachedRenderPipelineId>,
-    pub facts: EffectContext,
+    pub context: EffectContext,
     pub view: ViewUniform,
     pub lines: Option<LinesUniform>,
     pub line_layers: Option<LineLayersUniform>,
@@ -45,14 +45,14 @@ pub(crate) struct FusedRequest {
 /// A pass that draws a picture for the next one, with numbers if that one reads them, and the
 /// passes that draw means over boxes of this picture: of rows, then of boxes.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
-    pub picture: LayerPass,
-    pub means: Option<[LayerPass; 2]>,
+pub(crate) struct EarlierPassRequest {
+    pub picture: TexturePass,
+    pub means: Option<[TexturePass; 2]>,
 }
 
 /// A pass that draws a texture for a later one.
 #[derive(Clone, Debug)]
-pub(crate) struct LayerPass {
+pub(crate) struct TexturePass {
     pub key: StylizeKey,
     pub pipeline: CachedRenderPipelineId,
 }
@@ -65,13 +65,13 @@ const SLACK: u64 = 1024;
 impl FusedRequest {
     /// The pipelines of all passes.
     pub fn pipelines(&self) -> impl Iterator<Item = CachedRenderPipelineId> {
-        let passes = |layer: &Layer| {
-            let means = layer.means.iter().flatten();
-            let passes = [&layer.picture].into_iter().chain(means);
+        let passes = |earlier: &EarlierPassRequest| {
+            let means = earlier.means.iter().flatten();
+            let passes = [&earlier.picture].into_iter().chain(means);
             passes.map(|pass| pass.pipeline).collect::<Vec<_>>()
         };
-        let layers = self.layers.iter().flat_map(passes);
-        layers.chain(self.base).chain([self.pipeline])
+        let earlier = self.earlier.iter().flat_map(passes);
+        earlier.chain(self.base).chain([self.pipeline])
     }
 
     /// The bytes of `Comics` in `fused.wgsl`: only the parts that the key compiles
@@ -81,7 +81,7 @@ impl FusedRequest {
         let pad = |bytes: &mut Vec<u8>| bytes.resize(bytes.len().next_multiple_of(16), 0);
         for part in [
             encode(&self.view),
-            encode(&self.plan.finish.uniform(self.facts.viewport.z)),
+            encode(&self.plan.composite.uniform(self.context.viewport.z)),
         ] {
             bytes.extend(part);
             pad(&mut bytes);
@@ -99,7 +99,7 @@ impl FusedRequest {
         }
         for effect in self.plan.drawn() {
             if effect.effect_type().shader.settings.is_some() {
-                push(effect.uniform_bytes(&self.facts));
+                push(effect.uniform_bytes(&self.context));
             }
         }
         bytes

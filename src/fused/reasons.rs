@@ -36,9 +36,9 @@ impl Plan {
         let lines = self.lines.is_some();
         let maps = self.reads_map() || self.lines_read_map();
         match stage {
-            ComicsStage::Effect(_) | ComicsStage::RangeReadback | ComicsStage::MarkedObjects => {
-                SkipReason::NotRequested
-            }
+            ComicsStage::Effect(_)
+            | ComicsStage::RangeReadback
+            | ComicsStage::HighlightedObjects => SkipReason::NotRequested,
             ComicsStage::DepthPrepass => SkipReason::NoDepthStyle,
             ComicsStage::TransparentDepth if self.lacks.depth_copies => SkipReason::NoDepthCopies,
             ComicsStage::ObjectIds | ComicsStage::TransparentDepth if self.lacks.object_ids => {

@@ -22,13 +22,13 @@ use super::{
     Plan, ViewPlan,
     compiling::{are_compiling, is_compiling},
     context::effect_context,
+    drawn_area::DrawnArea,
     key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
     object_depths::object_depths,
-    part::Part,
     pass::StylizePipeline,
     passes::{Reads, passes},
-    prepare::{FusedRequest, Layer, LayerPass},
+    prepare::{EarlierPassRequest, FusedRequest, TexturePass},
     scene::Scene,
 };
 use crate::{
@@ -73,10 +73,10 @@ impl Services<'_> {
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Requests {
         let uniform = view_uniform(view, plan, scene);
-        let facts = effect_context(view, plan, scene.viewport, (extracted, camera));
-        let jumps = map_jumps(plan, scene, &facts);
-        let places = object_depths((plan, view), &facts, uniform, extracted);
-        let lines = line_request(view, (plan, &facts), scene, (uniform, jumps)).map(|request| {
+        let context = effect_context(view, plan, scene.viewport, (extracted, camera));
+        let jumps = map_jumps(plan, scene, &context);
+        let places = object_depths((plan, view), &context, uniform, extracted);
+        let lines = line_request(view, (plan, &context), scene, (uniform, jumps)).map(|request| {
             let passes = self.lines.get(cache, &request);
             (request, passes)
         });
@@ -89,7 +89,7 @@ impl Services<'_> {
                 view: uniform,
                 widest_object: view.widest_object,
             };
-            self.fused(cache, (plan, view.camera, facts), &inputs, lines.as_ref())
+            self.fused(cache, (plan, view.camera, context), &inputs, lines.as_ref())
         });
         let range = range_request(view, plan, scene).map(|request| {
             let passes = self.ranges.get(cache, &request);
@@ -124,50 +124,54 @@ impl Services<'_> {
     fn fused(
         &mut self,
         cache: &PipelineCache,
-        (plan, camera, facts): (&Arc<Plan>, Entity, EffectContext),
+        (plan, camera, context): (&Arc<Plan>, Entity, EffectContext),
         inputs: &KeyInputs,
         lines: Option<&(LineRequest, LinePasses)>,
     ) -> FusedRequest {
-        let all = StylizeKey::new(plan, inputs, &facts);
+        let all = StylizeKey::new(plan, inputs, &context);
         let passes = passes(plan);
         let mut keys: Vec<_> = passes.iter().map(|p| all.of_pass(plan, p)).collect();
-        // What the layers draw besides their pictures, for the next pass.
+        // What earlier passes draw besides their pictures, for the next pass.
         let mut means = vec![None; passes.len() - 1];
         for (i, pass) in passes.iter().enumerate().skip(1) {
             match pass.reads {
-                Some(Reads::Means(effect)) => {
-                    means[i - 1] = Some(keys[i].means_for(plan, effect, &facts));
+                Some(Reads::BoxStatistics(effect)) => {
+                    means[i - 1] = Some(keys[i].means_for(plan, effect, &context));
                 }
-                Some(Reads::Numbers(effect)) => keys[i - 1] = keys[i - 1].numbered(effect),
+                Some(Reads::AuxScalar(effect)) => keys[i - 1] = keys[i - 1].with_scalar(effect),
                 None => {}
             }
         }
         // There is always a last pass, which draws the view's picture.
         let whole = keys.pop().unwrap_or(all);
-        let chosen = ChosenPart::new((plan, &facts), &whole, lines);
+        let chosen = ChosenArea::new((plan, &context), &whole, lines);
         let mut specialize = |key: &StylizeKey| {
             let pipeline = &self.stylize_pipeline;
             self.stylize.specialize(cache, pipeline, key.clone())
         };
-        let base = (chosen.part == Part::Tiles)
+        let base = (chosen.area == DrawnArea::Tiles)
             .then(|| specialize(&whole.base(&chosen.local, chosen.without_lines)));
-        let mut pass = |key: StylizeKey| LayerPass {
+        let mut pass = |key: StylizeKey| TexturePass {
             pipeline: specialize(&key),
             key,
         };
-        let layers = keys.into_iter().zip(means).map(|(key, means)| Layer {
+        let earlier = keys.into_iter().zip(means);
+        let earlier = earlier.map(|(key, means)| EarlierPassRequest {
             picture: pass(key),
             means: means.map(|keys| keys.map(&mut pass)),
         });
-        let key = whole.with_part(chosen.part);
+        let key = whole.with_area(chosen.area);
         FusedRequest {
             camera,
             plan: plan.clone(),
-            facts,
+            context,
             view: inputs.view,
             lines: lines.map(|(request, _)| request.lines),
-            line_layers: plan.line_modifiers(&facts).layers.map(LineLayers::uniform),
-            layers: layers.collect(),
+            line_layers: plan
+                .line_modifiers(&context)
+                .layers
+                .map(LineLayers::uniform),
+            earlier: earlier.collect(),
             pipeline: specialize(&key),
             base,
             key,
@@ -176,30 +180,30 @@ impl Services<'_> {
 }
 
 /// What the last pass of a plan draws.
-struct ChosenPart {
-    part: Part,
+struct ChosenArea {
+    area: DrawnArea,
     /// Effects of the pass that change only some pixels.
     local: Vec<&'static str>,
     /// Lines are left out of the pixels that the tiles do not cover.
     without_lines: bool,
 }
 
-impl ChosenPart {
+impl ChosenArea {
     fn new(
-        (plan, facts): (&Plan, &EffectContext),
+        (plan, context): (&Plan, &EffectContext),
         whole: &StylizeKey,
         lines: Option<&(LineRequest, LinePasses)>,
     ) -> Self {
         let jumps = |effect: &dyn AnyEffect| {
-            matches!(effect.any_affected_area(facts), AffectedArea::AtJumps(_))
+            matches!(effect.any_affected_area(context), AffectedArea::AtJumps(_))
         };
         let searches_jumps = plan.drawn().any(jumps);
         let tiled = lines.filter(|(request, passes)| {
             passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
         });
-        let without_lines = line_reach(plan, facts).is_some();
+        let without_lines = line_reach(plan, context).is_some();
         let is_local =
-            |effect: &dyn AnyEffect| effect.any_affected_area(facts) != AffectedArea::Everywhere;
+            |effect: &dyn AnyEffect| effect.any_affected_area(context) != AffectedArea::Everywhere;
         let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
         let local: Vec<_> = in_last
             .filter(|effect| is_local(*effect))
@@ -209,14 +213,14 @@ impl ChosenPart {
             let jumps = request.jumps.is_some() && !local.is_empty();
             jumps || (without_lines && whole.reads_lines_anywhere())
         };
-        let part = match (whole.can_overlay(plan, facts), tiled) {
-            (true, Some(_)) => Part::OverlaidTiles,
-            (true, None) => Part::Overlay,
-            (false, Some((request, _))) if saves(request) && !whole.is_view() => Part::Tiles,
-            (false, _) => Part::Whole,
+        let area = match (whole.can_overlay(plan, context), tiled) {
+            (true, Some(_)) => DrawnArea::OverlaidTiles,
+            (true, None) => DrawnArea::Overlay,
+            (false, Some((request, _))) if saves(request) && !whole.is_view() => DrawnArea::Tiles,
+            (false, _) => DrawnArea::Whole,
         };
         Self {
-            part,
+            area,
             local,
             without_lines,
         }
@@ -303,7 +307,7 @@ impl Requests {
     }
 
     /// Puts the requests on the view, and removes those of the last frame.
-    /// `layer`: the entity with the requests for the lines of marked objects.
+    /// `layer`: the entity with the requests for the lines of highlighted objects.
     pub fn put(self, entity: Entity, layer: Option<Entity>, commands: &mut Commands) {
         let mut view = commands.entity(entity);
         match self.range {

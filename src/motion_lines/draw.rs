@@ -85,7 +85,7 @@ pub(super) fn follow(
         {
             let seeds = seeds_of(mesh, of.count, of.seed);
             if seeds.is_empty() {
-                warn_once!("a mesh with `MotionLines` has no triangles that can be read");
+                warn_once!("`MotionLines` does nothing on a mesh whose triangles cannot be read");
             }
             trail.set_seeds(seeds, of);
         }

@@ -9,8 +9,8 @@ use bevy::{
 use super::trail::Trail;
 use crate::settings::{FieldRange, clamp_fields};
 
-/// Draws lines behind a mesh while it moves fast: each is the path that a point of its surface
-/// took, so those of what turns are curved (Lake et al. 2000).
+/// Draws lines behind a mesh while it moves fast. Each line is the path of a point on its surface,
+/// so lines of a turning mesh are curved (Lake et al. 2000).
 ///
 /// Put it on an entity with a mesh. Points are chosen on its surface once, evenly by area; those at
 /// the back of the movement draw a line. Lines begin a little behind the surface, taper to both
@@ -49,16 +49,16 @@ pub struct MotionLines {
     /// Fraction of the duration that is left out behind the surface. Range 0 to 0.9, default 0.1.
     #[reflect(@FieldRange::linear(0.0, 0.9))]
     pub gap: f32,
-    /// How much shorter some lines are than the longest one: the fraction that the shortest one
-    /// lacks. Range 0 to 0.9, default 0.5.
+    /// How much shorter than the longest line the shortest one is, as a fraction of it. Range 0 to
+    /// 0.9, default 0.5.
     #[reflect(@FieldRange::linear(0.0, 0.9))]
     pub variation: f32,
     /// Speed of a point below which it has no line, in world units per second. Lines grow to
     /// their width between 0.8 and 1.2 times this. Range 1e-4 to 1e6, default 2.
     #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units / s"))]
     pub min_speed: f32,
-    /// Width at the widest place, in logical pixels of the first active 3D camera. Range 0.5 to
-    /// 16, default 3.
+    /// Width at the widest place, in logical pixels. Their size is that of the first active 3D
+    /// camera. Range 0.5 to 16, default 3.
     #[reflect(@FieldRange::logarithmic(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Colour of the ink before tonemapping; its alpha is the opacity. Components are clamped to

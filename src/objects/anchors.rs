@@ -17,21 +17,21 @@ use super::{inherit::Heritage, table::ObjectStyleUniform};
 /// [`ScreenAnchor::Object`](crate::effects::ScreenAnchor::Object) follow this object: the dots move, turn
 /// and grow with it, as if they were printed on the figure.
 ///
-/// Dots turn with the object's roll about the view's axis: the direction in which its Y axis points
-/// on the page, or its -Z axis where Y points within 6 degrees of the camera. They grow with its
-/// apparent size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then
-/// dots of half the size take over, faded in and out. While the centre is behind the camera, its
-/// dots lie on the page.
+/// The dots rotate with the object's roll on the screen: with the screen direction of its Y axis,
+/// or of its -Z axis where Y points to within 6 degrees of the camera. They grow with its apparent
+/// size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then dots of
+/// half the size take over, faded in and out. While the centre is behind the camera, its dots lie
+/// on the page.
 ///
 /// Each object takes a slot of the table of [`OutlineStyle`](crate::OutlineStyle)s, which has 255.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct PatternAnchor {
-    /// What the dots turn and grow about, in the object's own space; zero if a component is not
-    /// finite. Default: its origin.
+    /// The point that the dots rotate and scale around, in the object's own space. A point that is
+    /// not finite counts as the origin. Default: the origin.
     pub center: Vec3,
-    /// Applies to all descendants as well, which are one figure with this object, except for those
-    /// with a `PatternAnchor` of their own. Default: `true`.
+    /// Applies to all descendants as well, so that a figure of several meshes has one pattern,
+    /// except for those with a `PatternAnchor` of their own. Default: `true`.
     pub inherit: bool,
 }
 

@@ -36,9 +36,10 @@ use super::{
 /// Leaves this mesh out of the depth prepass, so that effects treat its pixels as sky: for sky domes, clouds and
 /// painted distances.
 ///
-/// It has no lines and no object id, is at the far end of the depth map, and does not stretch the visible
-/// range. Colour effects change it as they change the sky. The picture is the same: the main pass draws it, and
-/// what is in front hides it. With deferred rendering it works for forward materials only.
+/// The mesh has no lines and no object id, is at the far end of the depth map, and does not widen
+/// the visible range. Colour effects change it as they change the sky. The main pass still draws
+/// it, behind whatever is in front, so the unstyled picture does not change. With deferred
+/// rendering it works for forward materials only.
 ///
 /// [`DepthMap::sky_beyond`](crate::DepthMap::sky_beyond) does the same for all geometry from a distance on.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]

@@ -32,9 +32,9 @@ use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_r
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoOutlines {
-    /// Applies to all descendants as well, for example on the root of a glTF scene.
-    /// A descendant with an [`OutlineStyle`] or `NoOutlines` of its own is left out,
-    /// together with everything below it. Default: `true`.
+    /// Applies to all descendants as well, for example on the root of a glTF scene. It stops at
+    /// descendants with an [`OutlineStyle`] or `NoOutlines` of their own: neither they nor anything
+    /// below them are affected. Default: `true`.
     pub inherit: bool,
 }
 
@@ -46,11 +46,11 @@ impl Default for NoOutlines {
 
 /// Takes this object out of the colour effects: its colours stay as they were rendered.
 ///
-/// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) leave it
-/// alone: tone bands, desaturation, colorization, screens, and those of a game. Lines and the
-/// effects of the whole page still apply; [`NoOutlines`] removes its lines. At its rim,
-/// multisampled pixels mix both colours. For what has to keep its colour: a cursor, a team's flag,
-/// a light.
+/// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) do not apply
+/// to it: tone bands, desaturation, colorization, screens, and a game's own effects. Lines and the
+/// effects of the whole page still apply; [`NoOutlines`] removes its lines. Along its edges,
+/// multisampled pixels mix the styled and the unstyled colour. Use it for things whose colour has a
+/// meaning: a cursor, a team's flag, a light.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoStyle {
@@ -73,8 +73,8 @@ impl Default for NoStyle {
 /// draws this kind of line; if both do, to the nearer one. An object that also has
 /// [`NoOutlines`] has no lines.
 ///
-/// At most 255 different styles are told apart; objects with any further style get
-/// the 255th, and the log warns.
+/// At most 255 different styles exist at a time; objects with any further style get the 255th, and
+/// a warning is logged.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineStyle {
@@ -85,9 +85,8 @@ pub struct OutlineStyle {
     /// Range 0.5 to 16, default `None`.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: Option<f32>,
-    /// Factor of the opacity of all lines. Of faithful lines, which lie on both
-    /// sides of an edge, it changes the side of the object. Range 0 to 1; `None` is 1.
-    /// Default: `None`.
+    /// Factor of the opacity of all lines. Faithful lines lie on both sides of an edge; only the
+    /// side on the object changes. Range 0 to 1; `None` is 1. Default: `None`.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: Option<f32>,
     /// Kinds of line that are drawn, if the camera draws them too. Default: all.

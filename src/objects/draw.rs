@@ -1,4 +1,4 @@
-//! Records the passes that draw the ids of objects, and the layer of marked objects.
+//! Records the passes that draw the ids of objects, and the layer of highlighted objects.
 
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
@@ -94,7 +94,7 @@ pub(super) fn draw_object_ids(
         let targets = [Some(attachment(&layer.ids.default_view, LoadOp::default()))];
         let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
         let outcome = outcome.unwrap_or_else(StageOutcome::Skipped);
-        ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
+        ledger.set(request.camera, ComicsStage::HighlightedObjects, outcome);
     }
 }
 

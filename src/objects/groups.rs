@@ -28,11 +28,11 @@ use super::{changes::Follow, shared::Shared};
 /// All meshes of this entity and of its descendants are one object: between them, there
 /// are no [object edges](crate::lines::ObjectEdges).
 ///
-/// For what is seen as one thing but has several meshes: the chunks of a terrain, the
-/// parts of a building. Between the group and other objects, edges remain. Silhouettes
-/// and creases remain inside the group too, because they follow from depth and normals.
-/// [`OutlineStyle`](crate::OutlineStyle) and [`NoOutlines`](crate::NoOutlines) still
-/// apply to single meshes.
+/// Use it for things that look like one object but have several meshes: the chunks of a terrain,
+/// the parts of a building. Between the group and other objects, edges remain. Silhouettes and
+/// creases remain inside the group too, because they follow from depth and normals.
+/// [`OutlineStyle`](crate::OutlineStyle) and [`NoOutlines`](crate::NoOutlines) still apply to
+/// single meshes.
 ///
 /// If groups are nested, a mesh belongs to the nearest one on the way up, itself included.
 /// So a mesh with an `OutlineGroup` of its own is an object of its own.

@@ -76,7 +76,7 @@ pub(super) fn prepare_object_ids(
 
 /// Views whose plan reads ids, or whose ids were drawn in the last frame: while a pipeline
 /// compiles, the older plan that is still drawn may read ids that the new one does not. And
-/// views into whose depth transparent meshes are drawn, or with marked objects.
+/// views into whose depth transparent meshes are drawn, or with highlighted objects.
 type WithIds = Or<(
     With<IdsWanted>,
     With<IdRequest>,

@@ -124,7 +124,7 @@ pub(super) fn draw_function(
 pub(super) enum Drawn {
     /// Its id, and perhaps the widths of its lines.
     Ids { widths: bool },
-    /// Its depth and id in the layer of marked objects.
+    /// Its depth and id in the layer of highlighted objects.
     Marked,
 }
 

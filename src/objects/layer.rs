@@ -1,4 +1,4 @@
-//! The layer of marked objects: their depth and ids, drawn as if nothing else was there.
+//! The layer of highlighted objects: their depth and ids, drawn as if nothing else was there.
 
 use bevy::{
     core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
@@ -22,7 +22,7 @@ use bevy::{
 use super::ID_FORMAT;
 use crate::gpu;
 
-/// On a view in the render world: a request for the layer of marked objects.
+/// On a view in the render world: a request for the layer of highlighted objects.
 #[derive(Component)]
 pub(crate) struct LayerRequest {
     pub camera: Entity,
@@ -31,7 +31,7 @@ pub(crate) struct LayerRequest {
     pub samples: u32,
 }
 
-/// On a view in the render world: depth and ids of the marked objects.
+/// On a view in the render world: depth and ids of the highlighted objects.
 #[derive(Component, Clone)]
 pub(crate) struct ViewLayer {
     pub depth: CachedTexture,

@@ -41,11 +41,11 @@ use crate::{bind_groups::Binder, gpu};
 /// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
 /// 0 is no line, 0.5 the width that lines have otherwise, 1 twice that width.
 ///
-/// In between, the width changes gradually, over the surface as colours do. It is a factor
-/// beside those of the camera's [`LineWeight`](crate::lines::LineWeight), of which it multiplies
-/// [`pressure`](crate::lines::LineWeight::pressure) to 2 at most. It applies to lines of the
-/// corrected forms, on devices with compute shaders. A line belongs to the surface in front;
-/// the width of creases and object edges is the mean over both sides.
+/// In between, the width changes gradually; over the surface, it is interpolated as vertex colours
+/// are. It multiplies the factors of the camera's [`LineWeight`](crate::lines::LineWeight); its
+/// product with [`pressure`](crate::lines::LineWeight::pressure) is 2 at most. It applies to lines
+/// of the corrected equations, on devices with compute shaders. A line belongs to the surface in
+/// front; the width of creases and object edges is the mean over both sides.
 ///
 /// A mesh without vertex colours has the factor 1, and the log warns once. The engine
 /// multiplies the material's colour by vertex colours: with [`AlphaMode::Opaque`] the alpha

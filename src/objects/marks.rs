@@ -29,13 +29,13 @@ use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
 const SILHOUETTES: u32 = 1;
 const OBJECT_EDGES: u32 = 4;
 
-/// Outlines this object in the picture, also where others hide it unless
-/// [`occluded`](Self::occluded) is false: for what the player has selected or points at.
+/// Draws an outline around this object, for what the player has selected or points at. It shows
+/// through objects in front unless [`occluded`](Self::occluded) is `false`.
 ///
-/// Nothing else is needed: every `Camera3d` that sees the object draws the outline, over its
-/// other effects. All meshes of the object together have one outline, along the border of
-/// what they cover. Objects in the depth prepass can have it (opaque and alpha-masked ones;
-/// the holes of an alpha mask count as covered).
+/// Nothing else is needed: every `Camera3d` that sees the object draws the outline, over its other
+/// effects. All meshes of the object share one outline, along the border of the area that they
+/// cover together. Objects in the depth prepass can have it (opaque and alpha-masked ones; the
+/// holes of an alpha mask count as covered).
 ///
 /// An object that also has an [`XRayOutline`] has only this outline.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub struct SelectionOutline {
     /// Opacity of the line. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
-    /// Also where other objects are in front. Default: `true`.
+    /// Whether the outline shows through objects in front. Default: `true`.
     pub occluded: bool,
     /// Applies to all descendants as well, except for those with a `SelectionOutline` or
     /// [`XRayOutline`] of their own. Default: `true`.
@@ -72,8 +72,8 @@ impl Default for SelectionOutline {
 /// Outlines the hidden parts of this object over what hides them: for a character behind a
 /// wall.
 ///
-/// Its silhouettes are drawn where other objects are in front of it. Where it can be seen,
-/// there is no such line. Otherwise as a [`SelectionOutline`].
+/// Its silhouettes are drawn only where other objects hide it. In all other respects it behaves
+/// like a [`SelectionOutline`].
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct XRayOutline {

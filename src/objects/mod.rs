@@ -141,7 +141,7 @@ pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
 pub(crate) struct IdsWanted {
     /// Object ids.
     pub ids: bool,
-    /// The layer of marked objects.
+    /// The layer of highlighted objects.
     pub layer: bool,
     /// The widths of lines, see [`ViewLineWidths`].
     pub widths: bool,
@@ -230,7 +230,7 @@ fn update_object_styles(
     buffer.update(&styles, &device, &queue);
 }
 
-/// The table of the lines of marked objects on the GPU.
+/// The table of the lines of highlighted objects on the GPU.
 #[derive(bevy::ecs::resource::Resource, Default)]
 pub(crate) struct MarkStyleBuffer(pub ObjectStyleBuffer);
 

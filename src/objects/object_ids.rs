@@ -26,10 +26,10 @@ use bevy::{
 /// spawns them. A second mesh with the same `P` begins a second object.
 ///
 /// An object has an id while a view with ids sees one of its meshes, and keeps it afterwards until
-/// another object needs it: ids are given away again in the order in which they became free, at
-/// least three frames later if there are others. While views see more than 65535 objects, the
-/// others share ids, and there are no [object edges](crate::lines::ObjectEdges) between those with
-/// the same one.
+/// another object needs it. Free ids are reused in the order in which they became free, and not
+/// within three frames while there are others. While more than 65535 objects are in view, the
+/// surplus objects share ids; objects with the same id have no [object
+/// edges](crate::lines::ObjectEdges) between them.
 #[derive(Resource, Debug, Default)]
 pub struct ObjectIds {
     ids: EntityHashMap<u16>,

@@ -56,7 +56,7 @@ pub(crate) enum Layer {
     Prepass,
     /// The view's own depth: a transparent mesh.
     OwnDepth,
-    /// The layer of marked objects.
+    /// The layer of highlighted objects.
     Marked,
 }
 
@@ -136,7 +136,7 @@ pub(super) struct PhaseKey {
     pub ids: bool,
     /// The widths of lines are drawn with the ids.
     pub widths: bool,
-    /// The layer of marked objects.
+    /// The layer of highlighted objects.
     pub layer: bool,
     /// What transparent meshes are drawn into.
     pub targets: Option<QueuedDepth>,

@@ -12,19 +12,19 @@ use super::{
 };
 use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
-/// Makes this object simpler or more detailed than effects make it by distance: a hero with all
-/// details among simple figures, or a crowd that is simple near by too.
+/// Changes how much effects simplify this object with distance: a hero keeps all details, or a
+/// crowd is simple even near the camera.
 ///
 /// Effects follow it that simplify whole objects; of this crate's,
 /// [`Abstraction`](crate::Abstraction) with
 /// [`Granularity::Object`](crate::effects::Granularity::Object), which is the default. The meshes
 /// of an [`OutlineGroup`](crate::OutlineGroup) are one object: if several of them have this
-/// component, any of them counts.
+/// component, it is not specified which one applies.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ObjectSimplification {
-    /// The simplification of the object at every distance: 0 is all detail, 1 is none. `None`: that
-    /// of its distance. Range 0 to 1, default `None`.
+    /// Simplification of the object at every distance: 0 is all detail, 1 is none. `None` keeps the
+    /// simplification by distance. Range 0 to 1, default `None`.
     #[reflect(@FieldRange::FRACTION)]
     pub level: Option<f32>,
     /// Added to it; the sum is limited to 0 and 1. Range -1 to 1, default 0.

@@ -23,7 +23,7 @@ pub struct FieldRange {
     /// Whether equal ratios, not equal differences, look like equal steps. Sliders
     /// are then logarithmic, and transitions interpolate by ratio.
     pub logarithmic: bool,
-    /// Unit that is written after the number; empty if it has none.
+    /// Unit that is written after the number; empty if it has none. `px` are logical pixels.
     pub unit: &'static str,
 }
 

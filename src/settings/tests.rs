@@ -407,9 +407,9 @@ fn any_number_of_the_toon_light_is_clamped() {
             l.sanitized()
         }
     };
-    let terminator = light(|l, x| l.shadow_threshold = x);
+    let shadow_threshold = light(|l, x| l.shadow_threshold = x);
     fuzz("ToonLight::shadow_threshold", 0.0, 0.9, |x| {
-        terminator(x).shadow_threshold
+        shadow_threshold(x).shadow_threshold
     });
     let strength = light(|l, x| l.shadow_strength = x);
     fuzz("ToonLight::shadow_strength", 0.0, 1.0, |x| {

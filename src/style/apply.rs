@@ -23,11 +23,10 @@ use crate::effect::EffectRegistry;
 
 /// Gives a camera the style of a [`ComicStyle`] asset.
 ///
-/// The style is [applied](ComicStyle::apply) to the camera when the asset has
-/// loaded, and again whenever it changes. Between those moments the camera's
-/// components may be edited. If a file becomes unreadable, the camera keeps its
-/// last style. Removing this component takes the style off: the camera has its
-/// own style again.
+/// The style is [applied](ComicStyle::apply) to the camera when the asset has loaded, and again
+/// whenever it changes. Between those moments the camera's components may be edited. If a file
+/// becomes unreadable, the camera keeps its last style. Removing this component restores the
+/// camera's own style.
 ///
 /// A scene in code can name a path: the component's template takes one in the
 /// handle's place.

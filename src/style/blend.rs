@@ -16,12 +16,12 @@ impl ComicStyle {
     ///
     /// * Numbers are interpolated, colours in `OKLab`; an effect that only one
     ///   of the two has fades in or out.
-    /// * An effect whose mode changes (an operator, a form, the number of
-    ///   tone bands) fades out until `t = 0.5`, changes there, and fades in.
+    /// * An effect whose mode changes (an operator, the equations, the number of tone bands) fades
+    ///   out until `t = 0.5`, changes there, and fades in.
     /// * When the mapping of the depth map changes, every effect that reads
     ///   the map does so.
-    /// * What has no strength of its own changes at `t = 0.5`: the strokes of
-    ///   a sketch and how often they are drawn anew, `despike`, `locked`.
+    /// * Settings that cannot be interpolated switch at `t = 0.5`: the strokes of a sketch and
+    ///   their rate, `despike`, `locked`.
     ///
     /// Both count as complete styles. For a partial one, lay it
     /// [`over`](Self::over) the camera's own style first.

@@ -122,7 +122,7 @@ impl ComicStyle {
     }
 
     pub(super) fn take_off(camera: &mut EntityWorldMut) {
-        let own = own_look(camera);
+        let own = own_style(camera);
         if camera.take::<StyleLayer>().is_some() {
             own.write(camera);
         }
@@ -144,7 +144,7 @@ impl ComicStyle {
     pub fn edit(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| {
-            let mut own = own_look(&camera);
+            let mut own = own_style(&camera);
             let layer = camera.get::<StyleLayer>().cloned();
             match (layer, camera.take::<PlaceStyle>()) {
                 (Some(layer), Some(mut place)) => {
@@ -160,7 +160,7 @@ impl ComicStyle {
     }
 
     pub(super) fn lay_over(self, camera: &mut EntityWorldMut) {
-        let own = own_look(camera);
+        let own = own_style(camera);
         let written = self.over(&own);
         lay_over(camera, own, self, written);
     }
@@ -220,7 +220,7 @@ pub(super) fn lay_over(
 }
 
 /// The camera's style without the style that was applied to it.
-pub(super) fn own_look(camera: &EntityWorldMut) -> ComicStyle {
+pub(super) fn own_style(camera: &EntityWorldMut) -> ComicStyle {
     let Some(registry) = camera.world().get_resource::<EffectRegistry>() else {
         return ComicStyle::new();
     };

@@ -71,9 +71,9 @@ use crate::{
 /// * Both leave the camera's own [`DepthMap`] alone unless they mention
 ///   `depth_map`.
 ///
-/// Effects are the smallest unit: a style that mentions `outlines` sets all
-/// fields of [`Outlines`](crate::Outlines). Another style takes the place of the
-/// last one; styles do not pile up. [`ComicStyle::over`] computes the result.
+/// Effects are the smallest unit: a style that mentions `outlines` sets all fields of
+/// [`Outlines`](crate::Outlines). Applying another style replaces the last one.
+/// [`ComicStyle::over`] computes the result.
 #[derive(Asset, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(opaque)]
 #[reflect(Default, Clone, PartialEq, Debug, Serialize, Deserialize)]

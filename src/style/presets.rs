@@ -102,7 +102,7 @@ macro_rules! presets {
 }
 
 presets! {
-    /// The looks, in the order of the gallery: toons, books, prints, drawings, paintings, light.
+    /// The styles, in the order of the gallery: toons, books, prints, drawings, paintings, light.
     STYLES {
         /// A television toon: strong dark outlines. Flat with
         /// [`ToonScene`](crate::ToonScene).
@@ -229,13 +229,13 @@ mod tests {
     /// The first line of a style's file says what it is and what it was made for; its lines are
     /// those of the second paper or of later effects.
     #[test]
-    fn looks_say_their_intent_and_do_not_lean_on_contours() {
+    fn styles_say_their_intent_and_do_not_lean_on_contours() {
         assert_eq!(STYLES.len(), 37);
-        for look in STYLES {
-            let first = look.source.lines().next().unwrap_or_default();
+        for preset in STYLES {
+            let first = preset.source.lines().next().unwrap_or_default();
             let intent = first.strip_prefix("// ").unwrap_or_default();
-            assert!(intent.contains(". For "), "{look}: {first:?}");
-            assert!(look.style().get::<crate::Contours>().is_none(), "{look}");
+            assert!(intent.contains(". For "), "{preset}: {first:?}");
+            assert!(preset.style().get::<crate::Contours>().is_none(), "{preset}");
         }
     }
 
@@ -251,7 +251,7 @@ mod tests {
             );
             assert_eq!(style, preset.style());
             assert!(!style.name.is_empty(), "{preset} has no title");
-            assert!(!style.partial, "{preset} is a complete look");
+            assert!(!style.partial, "{preset} is a complete style");
         }
     }
 

@@ -20,21 +20,20 @@ use bevy::{
     time::{Real, Time},
 };
 
-use super::{Comic, ComicStyle, layer::own_look};
+use super::{Comic, ComicStyle, layer::own_style};
 use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 
 /// Carries a camera from the style that it has to another one, over time.
 ///
-/// The style it starts from is what the camera's components are when this one
-/// is put there, in the midst of another transition too. What lies between the
-/// two is [`ComicStyle::blend`]: continuous, with modes that change where
-/// their effect has no strength. When it is over the camera has exactly the
-/// other style, this component is gone, and [`StyleTransitionFinished`] is
-/// triggered on the camera.
+/// It starts from what the camera's components are when this one is added, even in the middle of
+/// another transition. In between, the camera has the [`ComicStyle::blend`] of both styles, which
+/// is continuous: modes change where their effect has no strength. At the end the camera has
+/// exactly the other style, this component is removed, and [`StyleTransitionFinished`] is triggered
+/// on the camera.
 ///
-/// It runs on the default [`Time`], so that a paused game pauses it, unless it runs
-/// [in real time](Self::in_real_time). Its clock stands while pipelines compile that the camera has never needed
-/// before. Styles that the game puts on the camera meanwhile are overwritten.
+/// It runs on the default [`Time`], so that a paused game pauses it, unless it runs [in real
+/// time](Self::in_real_time). Its clock stands still while pipelines compile that the camera needs
+/// for the first time. Styles that the game puts on the camera in the meantime are overwritten.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -174,7 +173,7 @@ pub(super) fn run_transitions(
                     .as_ref()
                     .is_some_and(|assets| assets.load_state(handle).is_failed());
                 if failed {
-                    warn!("{entity} keeps its style: the one it was to take failed to load");
+                    warn!("{entity} keeps its style: the style of its transition failed to load");
                     camera.remove::<StyleTransition>();
                     continue;
                 }
@@ -216,7 +215,7 @@ fn remember_start(mut camera: EntityWorldMut) {
         return;
     };
     let look = ComicStyle::of(EntityRef::from(&camera), &registry);
-    let own = own_look(&camera);
+    let own = own_style(&camera);
     if let Some(mut transition) = camera.get_mut::<StyleTransition>() {
         transition.start = Some(Start { look, own });
     }

@@ -20,17 +20,17 @@ use bevy::{
 
 use super::{
     ComicStyle, StyleTransition,
-    layer::{PlaceStyle, SeenVolume, StyleLayer, applied_style, lay_over, own_look},
+    layer::{PlaceStyle, SeenVolume, StyleLayer, applied_style, lay_over, own_style},
 };
 
 /// A region with a style of its own: the unit cube under the entity's transform, as of Bevy's
 /// `FogVolume`. Cameras with [`InStyleVolumes`] have its style while they are in it.
 ///
-/// How much of the style is seen depends only on where the camera is, so it is the same at every
-/// frame rate and in both directions. Of several volumes, one with a higher priority lies over the
-/// others, of equal ones that of the later entity: each is [blended](ComicStyle::blend) into what is
-/// below it. A hidden volume, one that is scaled to 0, one whose style has not loaded, and one
-/// without a render layer of the camera count as absent.
+/// The weight of the style depends only on the position of the camera, so it is the same at every
+/// frame rate and in both directions. Volumes with a higher priority lie over the others; among
+/// equal priorities, that of the later entity lies on top. Each is [blended](ComicStyle::blend)
+/// into what is below it. A hidden volume, one that is scaled to 0, one whose style has not loaded,
+/// and one without a render layer of the camera count as absent.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -175,7 +175,7 @@ fn apply(
         }
         return;
     }
-    let own = own_look(camera);
+    let own = own_style(camera);
     // What all of them say nothing about belongs to the game.
     let mut style = below.clone().unwrap_or_else(|| ComicStyle::new().partial());
     let mut look = style.over(&own);

@@ -39,9 +39,9 @@ fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving, left: f32) {
     }
 }
 
-fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
+fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, specular: vec3<f32>) -> vec3<f32> {
     // Half of a light: its mean over all directions that a surface can face.
     let even = 0.5 * sum.rest / PI + around;
     let tone = tone_of(sum.angle, sum.lit, sum.detail);
-    return view.exposure * (toned(base, tone, sum.color / PI, even) + shine / PI);
+    return view.exposure * (toned(base, tone, sum.color / PI, even) + specular / PI);
 }

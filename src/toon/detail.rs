@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::RampStop;
 use crate::settings::{FieldRange, clamp_or_default};
 
-/// A second ramp of a [`Ramp`](crate::toon::Ramp), and how much of each there is: the ramp itself
-/// where there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian
+/// A second ramp of a [`Ramp`](crate::toon::Ramp), and where it is used: the ramp itself applies
+/// where there is full detail, this one where there is none (X-Toon: Barla, Thollot and Markosian
 /// 2006).
 ///
 /// Between the two, stops move, soften and change their colours, which are mixed in `OKLab`. The
@@ -50,11 +50,12 @@ pub enum DetailAxis {
         /// What is in focus. Range 1e-4 to 1e6, default 5.
         #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
         distance: f32,
-        /// How far from it there is all detail, as a fraction of it. Range 0 to 10, default 0.15.
+        /// Half width of the range of full detail, as a fraction of `distance`. Range 0 to 10,
+        /// default 0.15.
         #[reflect(@FieldRange::linear(0.0, 10.0))]
         clear: f32,
-        /// From which multiple of it, and at which fraction, there is none; counted from the end
-        /// of what is clear. Range 1.01 to 1e6, default 3.
+        /// Ratio of distances over which detail falls to none, counted from the end of that range.
+        /// Range 1.01 to 1e6, default 3.
         #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
         ratio: f32,
     },

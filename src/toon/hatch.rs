@@ -110,8 +110,8 @@ mod tests {
     fn every_number_of_the_uniform_is_finite() {
         for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e-45, 1e30] {
             let hatching = Hatching {
-                shadows: x,
-                highlights: x,
+                solid_below: x,
+                bare_above: x,
                 gamma: x,
                 tones: u32::MAX,
                 spacing: x,

@@ -17,14 +17,14 @@ struct Hatch {
     unused: f32,
 }
 
-// The share of all light that arrives, from the brightness of both.
-fn light_share(arriving: f32, all: f32) -> f32 {
+// The fraction of all light that arrives, from the brightness of both.
+fn arriving_fraction(arriving: f32, all: f32) -> f32 {
     return clamp(arriving / max(all, 1e-20), 0.0, 1.0);
 }
 
-// Darkness of the strokes where a share of all light arrives: that of a white surface.
-fn hatch_tone(h: Hatch, share: f32) -> f32 {
-    return darkness(h.strokes, lightness(vec3(share))) * h.factor;
+// Darkness of the strokes where a fraction of all light arrives: that of a white surface.
+fn hatch_tone(h: Hatch, fraction: f32) -> f32 {
+    return darkness(h.strokes, lightness(vec3(fraction))) * h.factor;
 }
 
 // Number of the drawing at a time in seconds, see clock.rs.

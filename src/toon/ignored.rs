@@ -43,7 +43,7 @@ pub(super) fn warn_of_ignored(
             .map_or_else(Vec::new, |material| ignored(&material.base));
         if !names.is_empty() {
             warn_once!(
-                "a `ToonMaterial` has {}, which it does not draw",
+                "a `ToonMaterial` sets {}, which toon materials do not draw",
                 names.join(", ")
             );
         }

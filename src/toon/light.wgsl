@@ -3,12 +3,12 @@
 // The lighting of the toon material: pure functions.
 
 struct ToonLight {
-    // Cosine of the angle between normal and light at which the backface shadow
+    // Cosine of the angle between normal and light at which the form shadow
     // begins.
-    terminator: f32,
-    // Fraction of a light that the backface and the projected shadow remove.
-    backface: f32,
-    projected: f32,
+    shadow_threshold: f32,
+    // Fraction of a light that the form shadow and the cast shadow remove.
+    form_shadow: f32,
+    cast_shadow: f32,
     // Strength of the highlights, 0 to 4.
     highlight: f32,
     // Fraction of its peak at which a highlight ends.
@@ -29,7 +29,7 @@ fn edge_at(edge: f32, x: f32, width: f32) -> f32 {
 // 1 where a surface faces a light, 0 where it faces away. `cosine` is that of the
 // angle between normal and light, `width` its change over a pixel.
 fn facing(s: ToonLight, cosine: f32, width: f32) -> f32 {
-    return edge_at(s.terminator, cosine, width);
+    return edge_at(s.shadow_threshold, cosine, width);
 }
 
 // Change of a filtered shadow over a pixel, from the shadow at the pixel and at two

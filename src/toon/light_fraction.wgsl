@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::toon::light_fraction
 
-// One ramp over the share of all light that arrives: `RampMode::LightFraction`.
+// One ramp over the fraction of all light that arrives: `RampMode::LightFraction`.
 
 #import bevy_comics::toon::{
     bindings::toon,
@@ -59,8 +59,8 @@ fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving, left: f32) {
     (*sum).arriving += part.x * part.y;
 }
 
-// The tone of the share. A border of a shadow mixes the tones on its sides.
-fn tone_of_share(sum: Sum) -> vec3<f32> {
+// The tone of the fraction. A border of a shadow mixes the tones on its sides.
+fn tone_of_fraction(sum: Sum) -> vec3<f32> {
     let whole = 1.0 / max(sum.bright, 1e-30);
 #ifdef RAMP_DETAIL
     let detail = sum.detail * whole;
@@ -68,18 +68,18 @@ fn tone_of_share(sum: Sum) -> vec3<f32> {
     let detail = 1.0;
 #endif
     let ramp = ramp_of(detail);
-    let share = sum.arriving * whole;
+    let fraction = sum.arriving * whole;
     let width = sum.width * whole;
     let a = sum.first.x * whole;
     let b = sum.second.x * whole;
-    var color = tone_at(ramp, share, width);
+    var color = tone_at(ramp, fraction, width);
     if a > 0.0 {
-        color = mix(color, tone_at(ramp, share + a, width), sum.first.y);
+        color = mix(color, tone_at(ramp, fraction + a, width), sum.first.y);
     }
     if b > 0.0 {
         let beside = mix(
-            tone_at(ramp, share + b, width),
-            tone_at(ramp, share + a + b, width),
+            tone_at(ramp, fraction + b, width),
+            tone_at(ramp, fraction + a + b, width),
             sum.first.y,
         );
         color = mix(color, beside, sum.second.y);
@@ -91,7 +91,7 @@ fn tone_of_share(sum: Sum) -> vec3<f32> {
     return mix(full_tone(ramp), color, strength);
 }
 
-fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
+fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, specular: vec3<f32>) -> vec3<f32> {
     let direct = view.exposure * sum.color / PI;
     let even = view.exposure * around;
     // All light has the brightness 1, times what is kept of its own, which falls off in rings.
@@ -99,6 +99,6 @@ fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> 
     let all = max(brightness(direct) + evenly, 1e-7);
     let ringed = max(view.exposure * sum.ringed / PI + evenly, 1e-7);
     let strength = pow(ringed, toon.ramp.keep_intensity) / all;
-    let colors = toned(base, tone_of_share(sum), direct, even);
-    return strength * (colors + view.exposure * shine / PI);
+    let colors = toned(base, tone_of_fraction(sum), direct, even);
+    return strength * (colors + view.exposure * specular / PI);
 }

@@ -10,7 +10,7 @@
 }
 #endif
 #ifdef SLOPED_SHADOWS
-#import bevy_comics::toon::lamp_shadow::{point_shadow, spot_shadow, sun_shadow}
+#import bevy_comics::toon::light_shadow::{point_shadow, spot_shadow, sun_shadow}
 #endif
 #ifdef LIGHT_TEXTURES
 #import bevy_comics::toon::light_textures::{
@@ -32,7 +32,7 @@
 const PI: f32 = 3.14159265;
 
 // The shadow map of a point light or a spot light at a place, 1 where the light arrives.
-fn lamp_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
+fn light_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
     let place = vec4(at, 1.0);
     if is_spot {
         let near = view_bindings::clustered_lights.data[id].shadow_map_near_z;
@@ -41,23 +41,23 @@ fn lamp_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
     return shadows::fetch_point_shadow(id, place, s.mesh_normal, s.pixel);
 }
 
-// The same with a hard edge. Neighbouring pixels may see other lamps, so there are no
+// The same with a hard edge. Neighbouring pixels may see other lights, so there are no
 // derivatives: filters whose slope is not known are read for them, too.
-fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
+fn light_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
 #ifdef SLOPED_SHADOWS
     if is_spot {
         return spot_shadow(id, s, view_bindings::clustered_lights.data[id].shadow_map_near_z);
     }
     return point_shadow(id, s);
 #else
-    let shadow = lamp_shadow_at(is_spot, id, s, s.position);
+    let shadow = light_shadow_at(is_spot, id, s, s.position);
     if shadow <= 0.0 || shadow >= 1.0 {
         return shadow;
     }
     return sharpen(shadow, slope_over_pixel(
         shadow,
-        lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_x),
-        lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_y),
+        light_shadow_at(is_spot, id, s, s.position + s.foot.position_x),
+        light_shadow_at(is_spot, id, s, s.position + s.foot.position_y),
     ));
 #endif
 }
@@ -136,7 +136,7 @@ fn directional_light_through(id: u32, s: Surface, shadow: f32) -> Arriving {
     arriving.to_light = (*light).direction_to_light.xyz;
     arriving.to_highlight = arriving.to_light;
     arriving.color = (*light).color.rgb;
-    arriving.shine = 1.0;
+    arriving.specular = 1.0;
 #ifdef LIGHT_TEXTURES
     arriving.color *= directional_texture((*light).decal_index, s.position);
 #endif
@@ -202,11 +202,11 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: ToonLight) -> A
 #endif
     arriving.color = color * flat_light;
     arriving.smooth_color = color * smooth_light;
-    arriving.shine = 1.0;
+    arriving.specular = 1.0;
     let flags = (*light).flags;
     var shadow = 1.0;
     if s.receives && (flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
-        shadow = lamp_shadow(is_spot, id, s);
+        shadow = light_shadow(is_spot, id, s);
     }
     let contact = flags & mesh_view_types::POINT_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT;
     arriving.lit = with_contact(shadow, s, arriving.to_light, contact);
@@ -246,7 +246,7 @@ fn rect_light_at(id: u32, s: Surface, settings: ToonLight) -> Arriving {
     let flat_light = rings(settings, smooth_light, exposed(color), width);
     arriving.color = color * flat_light;
     arriving.smooth_color = color * smooth_light;
-    arriving.shine = 1.0;
+    arriving.specular = 1.0;
     arriving.to_light = light_vector / fraction;
     let reflected = reflect(-s.to_eye, s.normal);
     let to_place = mirrored(rect, at, reflected) - at;

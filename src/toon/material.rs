@@ -40,12 +40,11 @@ use crate::{
 /// ```
 ///
 /// `k_d` is the base colour. `S` is the shadow, with a hard, anti-aliased edge: it is
-/// [`shadow_strength`](ToonLight::shadow_strength) where the surface faces away
-/// from the light (backface shadow) or where the light's shadow map says that the
-/// light does not reach it (projected shadow), otherwise 0. The formula has no N·L
-/// term, so lit areas of one base colour are uniform; a [`Ramp`] gives them more tones.
-/// All directional, point, spot and rectangular lights are used, with light textures and
-/// contact shadows (\[CL\] 2.2, 2.3; Decaudin 1996).
+/// [`shadow_strength`](ToonLight::shadow_strength) where the surface faces away from the light
+/// (form shadow) or where the light's shadow map says that the light does not reach it (cast
+/// shadow), otherwise 0. The formula has no N·L term, so lit areas of one base colour are uniform;
+/// a [`Ramp`] gives them more tones. All directional, point, spot and rectangular lights are used,
+/// with light textures and contact shadows (\[CL\] 2.2, 2.3; Decaudin 1996).
 ///
 /// `ambient` includes lightmaps, irradiance volumes and the diffuse part of environment
 /// maps, in two tones unless [`flat_environment`](ToonLight::flat_environment) is
@@ -72,10 +71,10 @@ pub type ToonMaterial = ExtendedMaterial<StandardMaterial, ToonLight>;
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToonLight {
-    /// Moves the edge of the backface shadow towards the light: the cosine of the
-    /// angle between the normal and the direction to the light at which the shadow
-    /// begins. Range 0 to 0.9, default 0.08. Decaudin uses 0; a little more hides the
-    /// facets of coarse meshes, which shade themselves near the edge.
+    /// Moves the edge of the form shadow towards the light: the cosine of the angle between the
+    /// normal and the direction to the light at which the shadow begins. Range 0 to 0.9, default
+    /// 0.08. Decaudin uses 0; a little more hides the facets of coarse meshes, which shade
+    /// themselves near the edge.
     #[reflect(@FieldRange::linear(0.0, 0.9))]
     pub shadow_threshold: f32,
     /// Darkens surfaces that face away from a light. Default: `true`.
@@ -106,10 +105,9 @@ pub struct ToonLight {
     /// material. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub flat_environment: f32,
-    /// Reads the alpha of vertex colours as how easily a vertex is lit, as artists paint it: 0.5 is
-    /// neutral, at 0 nothing is lit, at 1 everything but what faces away and the shadows of other
-    /// things. It is
-    /// for opaque materials: alpha is still opacity in others. Default: `false`.
+    /// Whether the alpha of vertex colours, painted by an artist, says how easily a vertex is lit:
+    /// 0.5 is neutral, 0 is never lit, 1 is lit except where it faces away or lies in a cast
+    /// shadow. For opaque materials; in others, alpha is still opacity. Default: `false`.
     pub vertex_threshold: bool,
     /// How easily places are lit, as an image: its red channel means what the alpha of vertices
     /// does for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
@@ -130,7 +128,8 @@ pub struct ToonLight {
     /// If `ramp` is `None`, its other settings are those of [`Ramp::default`].
     #[texture(105, visibility(fragment), filterable = false)]
     pub ramp_map: RampMap,
-    /// The highlight of the brightest light as a sign. Default: `None`, a plain highlight.
+    /// A stylized shape for the highlight of the brightest light. Default: `None`, a plain
+    /// highlight.
     pub stylized_highlight: Option<StylizedHighlight>,
     /// A simpler form that the surface is shaded as. Default: `None`.
     pub proxy: Option<ShadingProxy>,
@@ -139,9 +138,9 @@ pub struct ToonLight {
     /// Strokes on the surface, as dark as the light that does not arrive. Default: `None`.
     ///
     /// They are those of the effect [`Hatching`], but stay on the mesh while it moves, is skinned
-    /// and is morphed, and know shadows from dark paint. Lightness is that of a white surface: the
-    /// root of the share that arrives of all light, in the tones of a ramp. Ambient light and
-    /// lightmaps always arrive.
+    /// and is morphed, and know shadows from dark paint. Their darkness is that of a white surface,
+    /// whose lightness is the square root of the fraction of all light that arrives, in the tones
+    /// of a ramp. Ambient light and lightmaps always arrive.
     ///
     /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
     /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
@@ -156,8 +155,8 @@ pub struct ToonLight {
     /// A map lies on the texture coordinates of the mesh, with its strokes along the first one; on
     /// meshes without any, it lies on the three planes of coordinates of the mesh at rest. A stroke
     /// has its width on the screen, as far as the map has mip levels: that of [`TonalArtMap`] has.
-    /// Of the settings of `hatching`, the map takes the place of `anchor`, and of all that tell how
-    /// strokes are drawn, from `spacing` to `rate` but for `tones`.
+    /// It replaces the settings of `hatching` that say how strokes are drawn: `anchor`, and those
+    /// from `spacing` to `rate`.
     ///
     /// Other images may be used: each texel of the red channel is the tone from which it is ink, in
     /// linear light (`is_srgb: false`), and every mip level is drawn, not averaged.

@@ -95,7 +95,7 @@ impl ToonPlugin {
         load_shader_library!(app, "hatch.wgsl");
         load_shader_library!(app, "hatch_light.wgsl");
         load_shader_library!(app, "indirect.wgsl");
-        load_shader_library!(app, "lamp_shadow.wgsl");
+        load_shader_library!(app, "light_shadow.wgsl");
         load_shader_library!(app, "lights.wgsl");
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "rim.wgsl");

@@ -32,7 +32,7 @@ fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving, left: f32) {
 #endif
 }
 
-fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
+fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, specular: vec3<f32>) -> vec3<f32> {
 #ifdef RAMP_ABSOLUTE
     let shade = tone_of(vec2(0.0), 1.0, 1.0);
     let tone = select(shade, sum.tones / max(sum.bright, 1e-30), sum.bright > 0.0);
@@ -40,5 +40,5 @@ fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> 
 #else
     let colors = base * (sum.color / PI + around);
 #endif
-    return view.exposure * (colors + shine / PI);
+    return view.exposure * (colors + specular / PI);
 }

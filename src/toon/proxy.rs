@@ -27,12 +27,12 @@ pub struct ShadingProxy {
     /// The same far away. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount_at_far: f32,
-    /// Up to this distance along the axis of the view, `amount` counts. World units. Range 1e-4 to
+    /// Distance along the view's axis up to which `amount` applies, in world units. Range 1e-4 to
     /// 1e6, default 1.
     #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
     pub from: f32,
-    /// From this multiple of `from` on, `amount_at_far` counts; between, it changes with the
-    /// logarithm of the distance. Range 1.01 to 1e6, default 10.
+    /// Multiple of `from` from which on `amount_at_far` applies; in between, the amount changes
+    /// with the logarithm of the distance. Range 1.01 to 1e6, default 10.
     #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
     pub ratio: f32,
 }
@@ -67,16 +67,15 @@ pub enum ProxyShape {
     Up,
     /// The mesh without its details: faces, hair and cloth.
     ///
-    /// The normal of a vertex is the mean of those of the triangles around it, and of those of its
-    /// neighbours, again and again; vertices at one place count as one, so that seams and hard
+    /// The normals of the triangles around each vertex are averaged, and then repeatedly with those
+    /// of its neighbours. Vertices at the same place are treated as one, so that seams and hard
     /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided
     /// into triangles, and a ball keeps its normals. Normals follow bones and morph targets.
     ///
     /// They are made in a task when a mesh first has such a material, and kept in a vertex
-    /// attribute of the mesh, of 4 bytes a vertex; until then, and for meshes
-    /// without normals or whose data is only on the GPU, the mesh's own normals are used; the log
-    /// says so of the first one of these. Of all materials that are on a mesh, the one with most
-    /// rounds counts.
+    /// attribute of the mesh, of 4 bytes a vertex; until then, and for meshes without normals or
+    /// whose data is only on the GPU, the mesh's own normals are used; the log says so of the first
+    /// one of these. If several materials share a mesh, the largest number of rounds is used.
     Smoothed {
         /// How often neighbours are averaged: 0 is smooth shading, more remove larger details, as
         /// wide as so many edges of the mesh. Range 0 to 50.
@@ -175,9 +174,9 @@ impl ProxyKey {
     /// The shader definitions. `is_smoothed`: the mesh has smoothed normals.
     pub(super) fn definitions(self, is_smoothed: bool) -> &'static [&'static str] {
         match self {
-            Self::Up => &["FORM", "FORM_UP"],
-            Self::Solid => &["FORM", "FORM_NORMAL"],
-            Self::Smoothed if is_smoothed => &["FORM", "FORM_NORMAL", "FORM_SMOOTHED"],
+            Self::Up => &["PROXY", "PROXY_UP"],
+            Self::Solid => &["PROXY", "PROXY_NORMAL"],
+            Self::Smoothed if is_smoothed => &["PROXY", "PROXY_NORMAL", "PROXY_SMOOTHED"],
             Self::Smoothed => &[],
         }
     }

@@ -16,10 +16,10 @@ use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb, okl
 /// The tones of a [`ToonMaterial`](crate::ToonMaterial), from shade to light (Lake et al.
 /// 2000).
 ///
-/// How much light arrives is a number from 0 to 1; [`mode`](Ramp::mode) says what it is. Each
-/// [`RampStop`] begins a tone. Edges between tones are anti-aliased, and as soft as wanted.
-/// The border of a projected shadow goes straight from the tone in the light to the first
-/// tone; none of the tones between is drawn along it.
+/// A ramp maps an amount of light, from 0 to 1, to a tone; [`mode`](Ramp::mode) says how that
+/// amount is measured. Each [`RampStop`] begins a tone. Edges between tones are anti-aliased, and
+/// as soft as wanted. The border of a cast shadow goes straight from the lit tone to the first
+/// tone, without the tones in between.
 ///
 /// [`form_shadows`], [`cast_shadows`] and [`shadow_strength`] work as without a ramp:
 /// where shadows take away only a part of the light, the tone is a mixture with the tone of
@@ -35,10 +35,10 @@ use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb, okl
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ramp {
-    /// Where tones begin, in any order: at most [`Ramp::MOST_STOPS`], of more the first are
-    /// used. Default: a violet shade, and full light from 0.25: what a key light reaches
-    /// at an angle of 75 degrees or less, but not what only a second light of less than a third of
-    /// its strength reaches.
+    /// The tones and where they begin, in any order: at most [`Ramp::MOST_STOPS`]; further ones are
+    /// ignored. Default: a violet shade, and full light from 0.25 on. So surfaces are lit where the
+    /// key light reaches them at an angle of 75 degrees or less, and in shade where only a second
+    /// light of less than a third of its strength does.
     #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub stops: Vec<RampStop>,
     /// What the ramp is applied to. Default: [`RampMode::LightFraction`].
@@ -59,13 +59,13 @@ pub struct Ramp {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum RampMode {
-    /// The share of all light that arrives: that of surfaces that face every light, without
-    /// shadows, is 1. Lights do not add up to more tones than the ramp has, and the exposure does
-    /// not change them.
+    /// The fraction of all light that arrives: 1 on a surface that faces every light and lies in no
+    /// shadow. Lights do not add up to more tones than the ramp has, and the exposure does not
+    /// change them.
     #[default]
     LightFraction,
-    /// The cosine of the angle between normal and light, for each light; then the sum. A ramp of
-    /// black, and white from the terminator, is the light without a ramp.
+    /// The cosine of the angle between normal and light, for each light; then the sum. Black at 0
+    /// and white from `shadow_threshold` on give the light without a ramp.
     PerLight,
     /// The cosine for the brightest light at each place. All other lights have no shape: half of
     /// each, its mean over all directions, arrives everywhere.
@@ -238,7 +238,7 @@ impl RampKey {
 
     pub(super) fn definitions(self) -> impl Iterator<Item = ShaderDefVal> {
         let mode = match self.mode {
-            RampMode::LightFraction => "RAMP_SHARE",
+            RampMode::LightFraction => "RAMP_LIGHT_FRACTION",
             RampMode::PerLight => "RAMP_PER_LIGHT",
             RampMode::Brightest => "RAMP_BRIGHTEST",
         };

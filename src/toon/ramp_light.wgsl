@@ -20,9 +20,9 @@
 #endif
 
 // Cosine of the angle between normal and light, and its change over a pixel. Without
-// backface shadows every surface faces the light.
+// form shadows every surface faces the light.
 fn angle_of(s: Surface, light: Arriving) -> vec2<f32> {
-    if toon.light.backface <= 0.0 {
+    if toon.light.form_shadow <= 0.0 {
         return vec2(1.0, 0.0);
     }
     return vec2(biased_cosine(s, light.to_light), biased_over_pixel(s, light.to_light));
@@ -82,7 +82,7 @@ fn full_tone(ramp: Ramp) -> vec3<f32> {
 
 // The part of a tone that shadows take away; the rest is that of full light.
 fn shadow_strength() -> f32 {
-    return min(max(toon.light.backface, toon.light.projected), 1.0);
+    return min(max(toon.light.form_shadow, toon.light.cast_shadow), 1.0);
 }
 
 // The tone of one light. `angle` is what `angle_of` returned.

@@ -18,12 +18,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// tones between rows are mixed in linear light. Without that axis, only the first row is used.
 ///
 /// The image is 2 to [`LARGEST`](Self::LARGEST) texels wide and 1 to as many high, in a format
-/// without compression; images in sRGB and in linear light both have the colours that they mean.
-/// Colours are clamped to what a display shows, components that are not finite are 0, and alpha is
-/// ignored. The image must be kept in the main world, as loaded ones are
+/// without compression; images in sRGB and in linear light are both read correctly. Colours are
+/// clamped to what a display shows, components that are not finite are 0, and alpha is ignored. The
+/// image must be kept in the main world, as loaded ones are
 /// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)). When it changes, the tones follow a
-/// frame later. Of an image that cannot be used, a warning says why, and the stops of the ramp are
-/// drawn.
+/// frame later. If an image cannot be used, a warning says why, and the stops of the ramp are drawn
+/// instead.
 ///
 /// Its sums are a texture of their own, of 16 bytes a texel and for one column more: 4 KB for a row
 /// of 256 tones, 1 MB for 256 rows.

@@ -14,15 +14,15 @@ const PI: f32 = 3.14159265;
 fn unshadowed(s: Surface, light: Arriving) -> f32 {
     let width = biased_over_pixel(s, light.to_light);
     let lit = facing(toon.light, biased_cosine(s, light.to_light), width);
-    let backface_shadow = (1.0 - lit) * toon.light.backface;
-    let projected_shadow = (1.0 - light.lit) * toon.light.projected;
-    return 1.0 - max(backface_shadow, projected_shadow);
+    let form_shadow = (1.0 - lit) * toon.light.form_shadow;
+    let cast_shadow = (1.0 - light.lit) * toon.light.cast_shadow;
+    return 1.0 - max(form_shadow, cast_shadow);
 }
 
 // Highlight of a light, as a multiple of it, without the colour of the surface. `left` is what
 // shadows leave of the light.
 fn highlight_of(s: Surface, light: Arriving, left: f32) -> f32 {
-    let most = light.shine * left;
+    let most = light.specular * left;
     if min(most, toon.light.highlight) <= 0.0 {
         return 0.0;
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, clamp_fields, clamp_or_default, color_serde, linear_rgb};
 
-/// A rim of light along the borders of things, as of a lamp behind them.
+/// A rim of light along the edges of an object, as from a light behind it.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -21,11 +21,11 @@ pub struct Rim {
     /// what a display shows; alpha is ignored. Default: white.
     #[serde(with = "color_serde")]
     pub color: Color,
-    /// How much of it covers the surface. Range 0 to 1, default 1.
+    /// Opacity of the rim over the surface. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub strength: f32,
-    /// How much of it is only on the side of the brightest light. 0 is all around. Range 0 to 1,
-    /// default 1.
+    /// How far the rim is confined to the side of the brightest light: 0 is all around, 1 only that
+    /// side. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub lit_side: f32,
 }
@@ -42,17 +42,17 @@ pub enum RimWidth {
         /// The rim is where the cosine between normal and eye is below this. Range 0 to 1, default
         /// 0.35.
         #[reflect(@FieldRange::FRACTION)]
-        share: f32,
+        fraction: f32,
         /// Width of its edge, in the same unit. Range 0 to 1, default 0, which is anti-aliased.
         #[reflect(@FieldRange::FRACTION)]
         softness: f32,
     },
-    /// The same width everywhere, in physical pixels, where something at least 2 % farther away is
-    /// beside the surface. It needs the depth prepass, which lines, for example, have; without it,
-    /// and with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
+    /// A constant width in physical pixels, along edges beyond which the next surface is at least 2
+    /// % farther away. It needs the depth prepass, which lines, for example, have; without it, and
+    /// with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
     Pixels(
         /// Width in physical pixels. Range 1 to 64, default 3.
-        #[reflect(@FieldRange::linear(1.0, 64.0).unit("px"))]
+        #[reflect(@FieldRange::linear(1.0, 64.0).unit("physical px"))]
         f32,
     ),
 }
@@ -60,7 +60,7 @@ pub enum RimWidth {
 impl Default for RimWidth {
     fn default() -> Self {
         Self::Facing {
-            share: 0.35,
+            fraction: 0.35,
             softness: 0.0,
         }
     }
@@ -83,8 +83,8 @@ impl Rim {
     pub fn sanitized(self) -> Self {
         Self {
             width: match self.width {
-                RimWidth::Facing { share, softness } => RimWidth::Facing {
-                    share: clamp_or_default(share, 0.35, 0.0, 1.0),
+                RimWidth::Facing { fraction, softness } => RimWidth::Facing {
+                    fraction: clamp_or_default(fraction, 0.35, 0.0, 1.0),
                     softness: clamp_or_default(softness, 0.0, 0.0, 1.0),
                 },
                 RimWidth::Pixels(pixels) => {
@@ -110,15 +110,15 @@ pub(super) struct RimUniform {
 impl From<&Rim> for RimUniform {
     fn from(rim: &Rim) -> Self {
         let rim = rim.sanitized();
-        let (share, softness, pixels) = match rim.width {
-            RimWidth::Facing { share, softness } => (share, softness, 0.0),
+        let (fraction, softness, pixels) = match rim.width {
+            RimWidth::Facing { fraction, softness } => (fraction, softness, 0.0),
             // Without a depth prepass, the default.
             RimWidth::Pixels(pixels) => (0.35, 0.0, pixels),
         };
         Self {
             color: linear_rgb(rim.color),
             strength: rim.strength,
-            begin: 1.0 - share,
+            begin: 1.0 - fraction,
             softness,
             pixels,
             lit_side: rim.lit_side,

@@ -5,7 +5,7 @@
 #import bevy_comics::toon::{
     bindings::toon,
     rim::{facing_rim, is_behind, rim_side},
-    specular::Shine,
+    specular::Specular,
     surface::{Surface, cosine_over_pixel},
 }
 
@@ -63,7 +63,7 @@ fn facing(s: Surface) -> f32 {
     return facing_rim(toon.rim, dot(s.normal, s.to_eye), width);
 }
 
-fn with_rim(color: vec3<f32>, s: Surface, shine: Shine) -> vec3<f32> {
+fn with_rim(color: vec3<f32>, s: Surface, specular: Specular) -> vec3<f32> {
     let rim = toon.rim;
 #ifdef NO_DEPTH_LOADS
     let there = facing(s);
@@ -72,6 +72,6 @@ fn with_rim(color: vec3<f32>, s: Surface, shine: Shine) -> vec3<f32> {
 #else
     let there = facing(s);
 #endif
-    let side = rim_side(rim, dot(s.normal, shine.source.to_light));
+    let side = rim_side(rim, dot(s.normal, specular.source.to_light));
     return mix(color, rim.color, there * side * rim.strength);
 }

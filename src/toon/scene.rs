@@ -40,7 +40,7 @@ pub(super) use copies::follow_materials;
 /// Scenes with equal settings share copies, so that their meshes are drawn together: an edit of the
 /// `ToonMaterial` of one mesh is an edit of all. A [`ToonShadingHandle`] changes one mesh alone.
 ///
-/// The lighting of a mesh is that of the first of these that there is and that has loaded:
+/// A mesh uses the first of these that exists and has loaded:
 ///
 /// 1. the [`ToonShadingHandle`] of the mesh;
 /// 2. the shading of its material's name in [`overrides`](Self::overrides);
@@ -77,7 +77,7 @@ impl ToonScene {
         }
     }
 
-    /// The same with another look for the material of this name.
+    /// The same scene with this shading for the material of this name.
     #[must_use]
     pub fn with_override(
         mut self,

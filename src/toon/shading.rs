@@ -60,7 +60,7 @@ use crate::style::{
 pub struct ToonShading {
     /// Title for people; any text. Default: empty.
     pub name: String,
-    /// The lighting. Numbers outside their documented ranges count as the nearest end.
+    /// The lighting. Numbers outside their documented ranges are clamped.
     pub light: ToonLight,
 }
 

@@ -12,7 +12,7 @@
 #import bevy_comics::toon::stylized_highlight_light::sign_of
 #endif
 
-struct Shine {
+struct Specular {
     // Light times pi of the highlights.
     color: vec3<f32>,
 #ifdef KEY_LIGHT
@@ -27,11 +27,11 @@ struct Shine {
 }
 
 // With one light more. `color` is its light, `left` what shadows leave of it.
-fn with_light(shine: Shine, s: Surface, light: Arriving, color: vec3<f32>, left: f32) -> Shine {
-    var sum = shine;
+fn with_light(before: Specular, s: Surface, light: Arriving, color: vec3<f32>, left: f32) -> Specular {
+    var sum = before;
     let disc = highlight_of(s, light, left);
 #ifdef KEY_LIGHT
-    let bright = brightness(light.smooth_color) * light.shine;
+    let bright = brightness(light.smooth_color) * light.specular;
     if bright > sum.bright {
         sum.color += sum.left * sum.disc;
         sum.next = sum.bright;
@@ -54,18 +54,18 @@ fn with_light(shine: Shine, s: Surface, light: Arriving, color: vec3<f32>, left:
 }
 
 // The light of all highlights, times pi.
-fn shine_of(shine: Shine, s: Surface) -> vec3<f32> {
+fn specular_of(specular: Specular, s: Surface) -> vec3<f32> {
 #ifdef KEY_LIGHT
-    var highlight = shine.disc;
+    var highlight = specular.disc;
 #ifdef STYLIZED_HIGHLIGHT
     // Where another light is nearly as bright, both draw plain highlights.
-    let alone = clamp(10.0 * (1.0 - shine.next / max(shine.bright, 1e-30)), 0.0, 1.0);
+    let alone = clamp(10.0 * (1.0 - specular.next / max(specular.bright, 1e-30)), 0.0, 1.0);
     if alone > 0.0 {
-        highlight = mix(highlight, sign_of(s, shine.source), alone);
+        highlight = mix(highlight, sign_of(s, specular.source), alone);
     }
 #endif
-    return shine.color + shine.left * highlight;
+    return specular.color + specular.left * highlight;
 #else
-    return shine.color;
+    return specular.color;
 #endif
 }

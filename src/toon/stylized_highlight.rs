@@ -9,21 +9,20 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, clamp_fields};
 
-/// The highlight of the brightest light as a sign: a window, a star, a pair of dots (Anjyo and
-/// Hiramitsu 2003).
+/// Draws the highlight of the brightest light in a stylized shape: a window, a star, a pair of dots
+/// (Anjyo and Hiramitsu 2003).
 ///
 /// Shapes keep their form on curved surfaces, move with light and view, and have an anti-aliased
 /// edge. Their size is that of the plain highlight, which the roughness of the material and
 /// [`highlight_edge`](crate::ToonLight::highlight_edge) give. All other lights draw plain
-/// highlights; where the second light has at least 0.9 of the brightness of the first, so does the
-/// first.
+/// highlights, and so does the brightest one where the second has at least 0.9 of its brightness.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StylizedHighlight {
     /// What is drawn. Default: [`HighlightShape::Disc`].
     pub shape: HighlightShape,
-    /// What the shape is upright to. Default: [`HighlightFrame::View`].
+    /// The direction that is up for the shape. Default: [`HighlightFrame::View`].
     pub frame: HighlightFrame,
     /// Multiple of the radius of the plain highlight. Range 0.1 to 8, default 1.
     #[reflect(@FieldRange::logarithmic(0.1, 8.0))]
@@ -42,8 +41,8 @@ pub struct StylizedHighlight {
     /// the middle, in its radii. Range 0 to 8, default 0.
     #[reflect(@FieldRange::linear(0.0, 8.0))]
     pub split: Vec2,
-    /// From round corners to square ones: of the disc, the square, the window and the faithful
-    /// form. Range 0 to 1, default 0.
+    /// How square the corners of the disc, the square, the window and the faithful shape are, from
+    /// 0 (round). Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub square: f32,
     /// Width of the bars of a window and of a streak, half the thickness of a crescent, and inner
@@ -53,11 +52,11 @@ pub struct StylizedHighlight {
     /// Points of a star. Range 3 to 12, default 4.
     #[reflect(@FieldRange::linear(3.0, 12.0))]
     pub points: u32,
-    /// How sharp the corners of the faithful equations are. Range 1 to 10, default 2.
+    /// How sharp the corners of the faithful shape are. Range 1 to 10, default 2.
     #[reflect(@FieldRange::linear(1.0, 10.0))]
     pub sharpness: u32,
     /// Width of the edge in physical pixels. Range 0 to 8, default 1, which is anti-aliased.
-    #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
+    #[reflect(@FieldRange::linear(0.0, 8.0).unit("physical px"))]
     pub softness: f32,
 }
 
@@ -79,13 +78,13 @@ pub enum HighlightShape {
     Star,
     /// A bar with round ends.
     Streak,
-    /// The paper's form: the half vector is scaled, turned, moved, split and squared, one after
-    /// the other. Shapes are discs that this deforms. With much `square`, the formula also lights
-    /// bands far away from the highlight.
+    /// The paper's equations: the half vector is scaled, turned, moved, split and squared, one
+    /// after the other. Shapes are discs that this deforms. With much `square`, the formula also
+    /// lights bands far away from the highlight.
     Faithful,
 }
 
-/// What a [`StylizedHighlight`] is upright to.
+/// The direction that is up for a [`StylizedHighlight`].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]

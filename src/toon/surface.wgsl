@@ -54,7 +54,7 @@ struct Arriving {
     // 1, or 0 if the light is part of a lightmap and only draws a highlight.
     diffuse: f32,
     // 1 if the light draws highlights, else 0.
-    shine: f32,
+    specular: f32,
 }
 
 // Where light comes from, as in `Arriving`.

@@ -19,7 +19,7 @@
     indirect::{ambient, light_around},
     lights::{clustered_light, directional_light, rect_light_at},
     reflect::{PI, unshadowed},
-    specular::{Shine, shine_of, with_light},
+    specular::{Specular, specular_of, with_light},
     surface::{Arriving, Footprint, Surface, bias_of},
 }
 #ifdef THRESHOLD_MAP
@@ -27,7 +27,7 @@
 #endif
 #ifdef RAMP_PER_LIGHT
 #import bevy_comics::toon::per_light::{Sum, add, reflected}
-#else ifdef RAMP_SHARE
+#else ifdef RAMP_LIGHT_FRACTION
 #import bevy_comics::toon::light_fraction::{Sum, add, reflected}
 #else ifdef RAMP_BRIGHTEST
 #import bevy_comics::toon::brightest::{Sum, add, reflected}
@@ -52,13 +52,13 @@
 #endif
 #ifdef HATCHED
 #import bevy_comics::toon::{
-    hatch::{light_share, rest_surface},
+    hatch::{arriving_fraction, rest_surface},
     hatch_light::{HatchPlace, with_hatching},
     ambient::brightness,
 }
 #endif
 
-#ifdef FORM
+#ifdef PROXY
 #import bevy_pbr::pbr_types::STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT
 #import bevy_comics::toon::proxy::{between, proxy_amount, unit_or_none}
 #endif
@@ -83,7 +83,7 @@ fn mapped_bias(pbr: PbrInput, in: VertexOutput) -> f32 {
 // What all lights give.
 struct Lit {
     sum: Sum,
-    shine: Shine,
+    specular: Specular,
 #ifdef HATCHED
     // As if all of the light arrived.
     whole: Sum,
@@ -109,14 +109,14 @@ fn lit_by(lit: Lit, s: Surface, light: Arriving) -> Lit {
     var sum = lit.sum;
     let left = unshadowed(s, light);
     add(&sum, s, light, left);
-#ifdef RAMP_SHARE
+#ifdef RAMP_LIGHT_FRACTION
     let color = light.smooth_color;
 #else
     let color = light.color;
 #endif
     var next = lit;
     next.sum = sum;
-    next.shine = with_light(lit.shine, s, light, color, left);
+    next.specular = with_light(lit.specular, s, light, color, left);
 #ifdef HATCHED
     next.whole = with_whole(lit.whole, s, light);
 #endif
@@ -124,7 +124,7 @@ fn lit_by(lit: Lit, s: Surface, light: Arriving) -> Lit {
 }
 
 // Sum over the light sources.
-fn add_lamps(
+fn add_lights(
     lit: ptr<function, Lit>,
     s: Surface,
     ranges: clustering::ClusterableObjectIndexRanges,
@@ -190,7 +190,7 @@ fn surface_of(in: PbrInput, foot: Footprint, own: OwnData) -> Surface {
 #else
     s.detail = detail_at(s);
 #endif
-    s.receives = (in.flags & MESH_FLAGS_SHADOW_RECEIVER_BIT) != 0u && toon.light.projected > 0.0;
+    s.receives = (in.flags & MESH_FLAGS_SHADOW_RECEIVER_BIT) != 0u && toon.light.cast_shadow > 0.0;
     return s;
 }
 
@@ -206,7 +206,7 @@ fn toon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
 #endif
 
     var lit: Lit;
-    add_lamps(&lit, s, ranges);
+    add_lights(&lit, s, ranges);
 #ifdef ENVIRONMENT
     var brighter: Arriving;
     brighter.color = around.more * in.diffuse_occlusion * PI;
@@ -226,14 +226,14 @@ fn toon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
     // Colour of the highlight: the base colour of a metal; otherwise white at the
     // default reflectance of 0.5.
     let tint = mix(min(2.0 * in.material.reflectance, vec3(1.0)), base.rgb, in.material.metallic);
-    var color = reflected(lit.sum, base.rgb, even, tint * shine_of(lit.shine, s));
+    var color = reflected(lit.sum, base.rgb, even, tint * specular_of(lit.specular, s));
 #ifdef HATCHED
     let arriving = brightness(reflected(lit.sum, vec3(1.0), even, vec3(0.0)));
     let all = brightness(reflected(lit.whole, vec3(1.0), even, vec3(0.0)));
-    color = with_hatching(color, light_share(arriving, all), own.hatch);
+    color = with_hatching(color, arriving_fraction(arriving, all), own.hatch);
 #endif
 #ifdef RIM
-    color = with_rim(color, s, lit.shine);
+    color = with_rim(color, s, lit.specular);
 #endif
     let emissive = in.material.emissive;
     return color + emissive.rgb * base.a * mix(1.0, view_bindings::view.exposure, emissive.a);
@@ -256,7 +256,7 @@ struct MoreInput {
     @location(8) rest_place: vec3<f32>,
     @location(9) rest_normal: vec3<f32>,
 #endif
-#ifdef FORM_NORMAL
+#ifdef PROXY_NORMAL
     @location(10) other_normal: vec3<f32>,
 #endif
 #ifdef DETAIL_VISIBLE
@@ -265,15 +265,15 @@ struct MoreInput {
 #endif
 }
 
-#ifdef FORM
+#ifdef PROXY
 // The normal between that of the mesh and that of the form.
 fn shaded_normal(pbr: PbrInput, more: MoreInput) -> vec3<f32> {
-#ifdef FORM_NORMAL
+#ifdef PROXY_NORMAL
     var other = unit_or_none(more.other_normal);
 #else
     let other = vec3(0.0, 1.0, 0.0);
 #endif
-#ifdef FORM_SMOOTHED
+#ifdef PROXY_SMOOTHED
     // Of a surface with two sides, that of the side that is seen.
     let sided = (pbr.material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
     other = select(other, -other, sided && !more.is_front);
@@ -328,7 +328,7 @@ fn fragment(vertex_output: VertexOutput, more: MoreInput) -> FragmentOutput {
     visibility_range_dither(in.position, in.visibility_range_dither);
 #endif
     var pbr = pbr_input_from_standard_material(in, more.is_front);
-#ifdef FORM
+#ifdef PROXY
     pbr.N = shaded_normal(pbr, more);
 #endif
     // Must be computed before alpha_discard: derivatives need all pixels.

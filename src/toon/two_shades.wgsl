@@ -18,8 +18,8 @@ fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving, left: f32) {
     (*sum).color += light.color * (left * light.diffuse);
 }
 
-// Reflected light, exposed. `around` is the light that arrives evenly, `shine` that of
+// Reflected light, exposed. `around` is the light that arrives evenly, `specular` that of
 // highlights, times pi.
-fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
-    return view.exposure * ((base * sum.color + shine) / PI + base * around);
+fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, specular: vec3<f32>) -> vec3<f32> {
+    return view.exposure * ((base * sum.color + specular) / PI + base * around);
 }

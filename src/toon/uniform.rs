@@ -28,8 +28,8 @@ pub struct ToonUniform {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 struct ToonLightUniform {
     shadow_threshold: f32,
-    backface: f32,
-    projected: f32,
+    form_shadow: f32,
+    cast_shadow: f32,
     highlight: f32,
     highlight_edge: f32,
     falloff: f32,
@@ -45,8 +45,8 @@ impl From<&ToonLight> for ToonUniform {
         Self {
             light: ToonLightUniform {
                 shadow_threshold: light.shadow_threshold,
-                backface: strength(light.form_shadows),
-                projected: strength(light.cast_shadows),
+                form_shadow: strength(light.form_shadows),
+                cast_shadow: strength(light.cast_shadows),
                 highlight: light.highlight,
                 highlight_edge: light.highlight_edge,
                 falloff: light.falloff,
@@ -122,10 +122,10 @@ impl ToonKey {
         let smoothed = smoothed && self.reads_smoothed();
         let names = [
             (rest, "HATCH_REST"),
-            (smoothed, "FORM_SMOOTHED"),
+            (smoothed, "PROXY_SMOOTHED"),
             (
                 smoothed || self.proxy == Some(ProxyKey::Solid),
-                "FORM_NORMAL",
+                "PROXY_NORMAL",
             ),
             (self.visible, "DETAIL_VISIBLE"),
         ];
@@ -286,7 +286,7 @@ mod tests {
         };
         let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), 2);
         let found = ToonKey::from(&ramp).definitions(&[], true);
-        assert_eq!(found, ["RAMP_SHARE".into(), stops]);
+        assert_eq!(found, ["RAMP_LIGHT_FRACTION".into(), stops]);
     }
 
     /// Borders of shadows come from the texels of shadow maps where the engine's filter is the one

@@ -10,9 +10,9 @@
     skinning,
     view_transformations::position_world_to_clip,
 }
-#ifdef FORM_SMOOTHED
+#ifdef PROXY_SMOOTHED
 #import bevy_comics::toon::octahedral::octahedral
-#else ifdef FORM_NORMAL
+#else ifdef PROXY_NORMAL
 #import bevy_comics::toon::{bindings::toon, proxy::proxy_normal}
 #endif
 #ifdef DETAIL_VISIBLE
@@ -48,7 +48,7 @@ struct MoreOutput {
     @location(8) rest_place: vec3<f32>,
     @location(9) rest_normal: vec3<f32>,
 #endif
-#ifdef FORM_NORMAL
+#ifdef PROXY_NORMAL
     // In world space. That of an ellipsoid is not of unit length: so it is linear over a triangle.
     @location(10) other_normal: vec3<f32>,
 #endif
@@ -92,8 +92,8 @@ fn normal_in_world(normal: vec3<f32>, world_from_local: mat4x4<f32>, instance: u
 }
 #endif
 
-#ifndef FORM_SMOOTHED
-#ifdef FORM_NORMAL
+#ifndef PROXY_SMOOTHED
+#ifdef PROXY_NORMAL
 // The normal of an ellipsoid or a cylinder in the space of the entity. Fragments could not find it:
 // matrices of meshes are in storage buffers, which not all adapters read for the pixels beside a
 // triangle, and derivatives need these.
@@ -122,7 +122,7 @@ fn with_rest(without: MoreOutput, at_rest: Vertex, own: mat4x4<f32>) -> MoreOutp
 @vertex
 fn vertex(
     at_rest: Vertex,
-#ifdef FORM_SMOOTHED
+#ifdef PROXY_SMOOTHED
     @location(8) smoothed: vec2<f32>,
 #endif
 ) -> MoreOutput {
@@ -143,11 +143,11 @@ fn vertex(
 #ifdef VERTEX_NORMALS
     out.world_normal = normal_in_world(moved.normal, world_from_local, at_rest.instance_index);
 #endif
-#ifdef FORM_SMOOTHED
+#ifdef PROXY_SMOOTHED
     // Morph targets add to it what they add to the mesh's normal.
     let form = octahedral(smoothed) + (moved.normal - at_rest.normal);
     out.other_normal = normal_in_world(form, world_from_local, at_rest.instance_index);
-#else ifdef FORM_NORMAL
+#else ifdef PROXY_NORMAL
     out.other_normal = solid_normal(out.world_position, at_rest.instance_index);
 #endif
 #ifdef HATCH_REST

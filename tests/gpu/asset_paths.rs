@@ -34,7 +34,7 @@ const ELSEWHERE: [&str; 14] = [
 
 /// An untrusted shading reads nothing outside the folder of assets, whatever the app allows.
 #[test]
-fn a_look_loads_no_image_from_elsewhere() {
+fn a_shading_loads_no_image_from_elsewhere() {
     let folder = Folder::new("untrusted");
     let mut small = watching(&folder);
     for (k, path) in ELSEWHERE.into_iter().enumerate() {
@@ -45,10 +45,10 @@ fn a_look_loads_no_image_from_elsewhere() {
         fs::write(folder.0.join(&name), text).expect("written");
         let mut failures = MessageCursor::default();
         failures.clear(messages(small.world()));
-        let look = load(&mut small, name);
+        let shading = load(&mut small, name);
         let failed = |world: &mut World| {
             let server = world.resource::<AssetServer>();
-            matches!(server.load_state(&look), LoadState::Failed(_))
+            matches!(server.load_state(&shading), LoadState::Failed(_))
         };
         assert!(wait(&mut small, 400, failed), "{path} was read");
         let read = failures.read(messages(small.world()));
@@ -60,7 +60,7 @@ fn a_look_loads_no_image_from_elsewhere() {
 
 /// Paths that stay in the folder are read.
 #[test]
-fn a_look_loads_an_image_of_its_assets() {
+fn a_shading_loads_an_image_of_its_assets() {
     let folder = Folder::new("own");
     fs::create_dir_all(folder.0.join("ramps")).expect("a folder");
     let tones = image::RgbaImage::from_pixel(4, 1, image::Rgba([90, 90, 90, 255]));
@@ -71,9 +71,9 @@ fn a_look_loads_an_image_of_its_assets() {
         let name = format!("own{k}.toon.ron");
         let text = format!("(version: 2, light: (ramp_map: {path:?}))");
         fs::write(folder.0.join(&name), text).expect("written");
-        let look = load(&mut small, name);
+        let shading = load(&mut small, name);
         let loaded = wait(&mut small, 400, |_| {
-            server.is_loaded_with_dependencies(&look)
+            server.is_loaded_with_dependencies(&shading)
         });
         assert!(loaded, "{path} was not read");
     }

@@ -291,7 +291,7 @@ fn a_transition_and_the_cameras_file_agree() {
 /// While pipelines compile in the background, as in a game, a change of style
 /// never shows the original picture.
 #[test]
-fn a_look_stays_until_the_next_one_is_compiled() {
+fn a_style_stays_until_the_next_one_is_compiled() {
     let background = HeadlessOptions {
         background_pipelines: true,
         ..options(size())

@@ -35,20 +35,20 @@ fn ball() -> Mesh {
     ball
 }
 
-/// Balls with looks of the toon material under a light, and a cube with sections. All looks have
+/// Balls with shadings of the toon material under a light, and a cube with sections. All have
 /// every texture, and together every option.
-fn put_things(small: &mut Small, looks: Range<usize>) {
+fn put_things(small: &mut Small, shadings: Range<usize>) {
     let world = small.world();
     let towards = Transform::from_xyz(3.0, 5.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     world.spawn((Object, DirectionalLight::default(), towards));
     let mut images = world.resource_mut::<Assets<Image>>();
     let map = images.add(tones());
     let art_map = images.add(TonalArtMap::default().image());
-    for (k, look) in toon_shading::all_kinds().into_iter().enumerate() {
-        if !looks.contains(&k) {
+    for (k, shading) in toon_shading::all_kinds().into_iter().enumerate() {
+        if !shadings.contains(&k) {
             continue;
         }
-        let mut light = look.light;
+        let mut light = shading.light;
         light.threshold_map = Some(map.clone());
         light.ramp_map = map.clone().into();
         // Strokes by planes on every other ball.
@@ -67,7 +67,7 @@ fn put_things(small: &mut Small, looks: Range<usize>) {
 }
 
 /// `styles`: how many of two are drawn, all effects with outlines and with a sketch.
-fn check(msaa: Msaa, looks: Range<usize>, styles: usize) {
+fn check(msaa: Msaa, shadings: Range<usize>, styles: usize) {
     let limits = wgpu::Limits::default();
     let options = HeadlessOptions {
         limits: Some(limits.clone()),
@@ -81,7 +81,7 @@ fn check(msaa: Msaa, looks: Range<usize>, styles: usize) {
     small.insert((DepthPrepass, NormalPrepass, MotionVectorPrepass));
     let bare = small.settle().picture();
     assert_eq!(small.errors(), 0, "{msaa:?}: the engine's own");
-    put_things(&mut small, looks);
+    put_things(&mut small, shadings);
     let plain = small.settle().picture();
     assert_eq!(small.errors(), 0, "{msaa:?}: materials");
     let seen = changed(&bare, &plain);
@@ -99,7 +99,7 @@ fn check(msaa: Msaa, looks: Range<usize>, styles: usize) {
     }
 }
 
-/// A look with strokes of a map.
+/// A shading with strokes of a map.
 #[test]
 fn everything_is_drawn_within_the_default_limits() {
     check(Msaa::Off, 2..3, 1);
@@ -110,9 +110,9 @@ fn everything_is_drawn_within_the_default_limits_with_four_samples() {
     check(Msaa::Sample4, 2..3, 1);
 }
 
-#[ignore = "long: every look of the toon material has large shaders"]
+#[ignore = "long: every shading of the toon material has large shaders"]
 #[test]
-fn every_look_is_drawn_within_the_default_limits() {
+fn every_shading_is_drawn_within_the_default_limits() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         check(msaa, 0..toon_shading::all_kinds().len(), 2);
     }

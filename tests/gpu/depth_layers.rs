@@ -451,7 +451,7 @@ fn hatching_and_dots_are_as_strong_as_in_their_layer() {
     let hatching = Hatching {
         anchor: HatchingAnchor::Page,
         ground: HatchingGround::Paper,
-        highlights: 1.0,
+        bare_above: 1.0,
         ..default()
     };
     let halftone = Halftone {

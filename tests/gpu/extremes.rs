@@ -113,14 +113,14 @@ fn greys_stay_grey_under_the_faithful_equations() {
     for mode in [
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
-        ColorizationMode::Quadratic,
+        ColorizationMode::SquareRoot,
     ] {
         let colorization = Colorization {
             mode,
             equations: Equations::Faithful,
             ..default()
         };
-        let style = ComicStyle::new().with(Desaturation::QUADRATIC);
+        let style = ComicStyle::new().with(Desaturation::SQUARE_ROOT);
         let picture = drawn(&mut small, &style.with(colorization));
         let mut pixels = picture.pixels();
         let grey = pixels.all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);

@@ -129,13 +129,13 @@ fn large_files_of_the_previous_version_are_read_in_time() {
 }
 
 #[test]
-fn parsing_a_look_never_panics() {
+fn parsing_a_shading_never_panics() {
     let kinds = crate::toon_shading::all_kinds();
-    let written = kinds.iter().map(|look| look.to_ron().expect("written"));
+    let written = kinds.iter().map(|shading| shading.to_ron().expect("written"));
     let mut shown = String::new();
     let read = |text: &str| ToonShading::from_ron(text).ok();
-    read_texts(Texts::new(2, written), read, |look| {
-        let used = look.light.clone().sanitized();
+    read_texts(Texts::new(2, written), read, |shading| {
+        let used = shading.light.clone().sanitized();
         assert!(used.clone().sanitized() == used, "{used:?}");
         // The path of an image is no number, whatever it is.
         let numbers = ToonLight {
@@ -143,7 +143,7 @@ fn parsing_a_look_never_panics() {
             ..used
         };
         assert_finite(&numbers, &mut shown);
-        let written = look.to_ron().expect("what was read can be written");
+        let written = shading.to_ron().expect("what was read can be written");
         let again = ToonShading::from_ron(&written).expect("what was written can be read");
         assert_eq!(again.to_ron().expect("again"), written);
     });

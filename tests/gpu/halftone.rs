@@ -7,7 +7,7 @@ use bevy_comics_testkit::{
         halftone::{Plate, inked, plate_tones},
     },
     screens::{
-        PERIODS, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean, moire,
+        CELL_SIZES, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean, moire,
         moire_of_inks, tone_error,
     },
 };
@@ -23,19 +23,19 @@ pub fn shot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
     small.settle().picture()
 }
 
-/// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone. Fewer are
+/// 11 tones, 6 shapes, 5 sizes of cells, 4 angles: the mean of a flat area is its tone. Fewer are
 /// rendered, by `rendered_flats_have_their_tone`.
 #[test]
 #[ignore = "long: 1,320 flat areas in double precision"]
 fn flat_fields_have_their_tone() {
     let mut worst = Vec::new();
     for shape in SHAPES {
-        for period in PERIODS {
-            let most = tone_error(shape, period);
+        for cell_size in CELL_SIZES {
+            let most = tone_error(shape, cell_size);
             let exact = [ScreenShape::Round, ScreenShape::Line, ScreenShape::Diamond];
             let limit = if exact.contains(&shape) { 0.005 } else { 0.01 };
-            println!("{shape:?}, {period} px: {most:?} (error, tone, degrees)");
-            worst.push((shape, period, most, limit));
+            println!("{shape:?}, {cell_size} px: {most:?} (error, tone, degrees)");
+            worst.push((shape, cell_size, most, limit));
         }
     }
     worst.retain(|(_, _, (error, _, _), limit)| error.abs() > *limit);
@@ -100,17 +100,17 @@ fn no_pixel_jumps() {
 }
 
 #[test]
-#[ignore = "long: five periods, in double precision"]
-fn no_pixel_jumps_at_any_period() {
-    assert_no_jumps(&PERIODS);
+#[ignore = "long: five sizes of cells, in double precision"]
+fn no_pixel_jumps_at_any_cell_size() {
+    assert_no_jumps(&CELL_SIZES);
 }
 
-fn assert_no_jumps(periods: &[f64]) {
+fn assert_no_jumps(cell_sizes: &[f64]) {
     for shape in SHAPES {
-        for &period in periods {
-            let most = largest_jump(shape, period);
-            println!("{shape:?}, {period} px: {most:?} (jump, tone)");
-            assert!(most.0 <= 0.1, "{shape:?}, {period} px: {most:?}");
+        for &cell_size in cell_sizes {
+            let most = largest_jump(shape, cell_size);
+            println!("{shape:?}, {cell_size} px: {most:?} (jump, tone)");
+            assert!(most.0 <= 0.1, "{shape:?}, {cell_size} px: {most:?}");
         }
     }
 }
@@ -123,19 +123,19 @@ fn there_is_no_moire() {
 }
 
 #[test]
-#[ignore = "long: three angles of two periods, in double precision"]
+#[ignore = "long: three angles of two sizes of cells, in double precision"]
 fn there_is_no_moire_at_any_angle() {
     let angles = [0.0, 15.0, 45.0].map(|degrees| [(4.0, degrees), (6.0, degrees)]);
     assert_no_moire(angles.as_flattened());
 }
 
-/// `screens`: periods in pixels, and degrees.
+/// `screens`: sizes of cells in pixels, and degrees.
 fn assert_no_moire(screens: &[(f64, f64)]) {
     for shape in SHAPES {
-        for &(period, degrees) in screens {
+        for &(cell_size, degrees) in screens {
             for zones in [false, true] {
-                let moire = moire(shape, period, degrees, zones);
-                let what = format!("{shape:?}, {period} px, {degrees} degrees, zones {zones}");
+                let moire = moire(shape, cell_size, degrees, zones);
+                let what = format!("{shape:?}, {cell_size} px, {degrees} degrees, zones {zones}");
                 assert!(moire < 0.01, "{what}: {moire}");
             }
         }
@@ -221,8 +221,8 @@ const FLATS: [(f32, f32); 3] = [(4.0, 0.3), (6.0, 0.85), (12.0, 0.6)];
 
 fn assert_rendered_flats(cases: impl Iterator<Item = ((f32, f32), ScreenShape)>) {
     let mut small = flat();
-    for ((period, tone), shape) in cases {
-        assert_light_stays(&mut small, [1.0 - tone; 3], ideal_spot(shape, period));
+    for ((cell_size, tone), shape) in cases {
+        assert_light_stays(&mut small, [1.0 - tone; 3], ideal_spot(shape, cell_size));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -319,8 +319,8 @@ fn assert_modes(small: &mut Small, samplings: [&[ScreenSampling]; 4]) {
                 at_near: 1.0,
                 at_far: 0.3,
                 gain: 0.1,
-                shadows: 0.05,
-                highlights: 0.9,
+                solid_below: 0.05,
+                bare_above: 0.9,
                 shadows_only_below: 0.7,
                 ..default()
             };
@@ -370,7 +370,7 @@ pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
 /// Too fine for the screen: plain tones, the picture itself with ideal inks. Settings out of
 /// their ranges are those at the end of it, or the defaults.
 #[test]
-fn impossible_periods_show_a_picture() {
+fn impossible_cell_sizes_show_a_picture() {
     let options = HeadlessOptions {
         scale_factor: 0.1,
         ..options(UVec2::new(48, 32))

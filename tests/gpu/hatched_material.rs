@@ -60,16 +60,16 @@ pub fn light_from(small: &mut Small, to: Vec3, part: f32) -> Entity {
     small.world().spawn((Object, bright(part), at)).id()
 }
 
-/// The darkness where a share of all light arrives.
-pub fn tone(hatching: &Hatching, share: f64) -> f64 {
-    Hatch::new(hatching).tone(share.sqrt()) * f64::from(hatching.at_near)
+/// The darkness where a fraction of all light arrives.
+pub fn tone(hatching: &Hatching, fraction: f64) -> f64 {
+    Hatch::new(hatching).tone(fraction.sqrt()) * f64::from(hatching.at_near)
 }
 
 /// Light from the front, from behind, and from all around.
 const LIGHT: [[f32; 3]; 3] = [[0.3, 0.9, 0.0], [0.6, 0.4, 0.0], [0.0, 0.6, 0.2]];
 
-/// Truth: a flat wall on which a share of all light arrives has the darkness that this share asks
-/// for, at every angle, with one layer and with three.
+/// Truth: a flat wall on which a fraction of all light arrives has the darkness that this fraction
+/// asks for, at every angle, with one layer and with three.
 #[test]
 fn flat_walls_have_the_tone_of_their_light() {
     let [back, front, around] = LIGHT;
@@ -86,7 +86,7 @@ fn flat_walls_have_the_tone_of_every_light() {
 fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
     let mut small = room(SIZE, 0.0);
     for &([front, behind, around], angles) in walls {
-        let share = f64::from((front + around) / (front + behind + around));
+        let fraction = f64::from((front + around) / (front + behind + around));
         small.world().insert_resource(GlobalAmbientLight {
             brightness: around * full() / std::f32::consts::PI,
             ..default()
@@ -111,15 +111,15 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
                     ..plain()
                 };
                 set_light(&mut small, &with(s));
-                let (got, want) = (mean(&covers(&mut small)), tone(&s, share));
-                let what = format!("share {share:.2}, {degrees} degrees, {s:?}");
+                let (got, want) = (mean(&covers(&mut small)), tone(&s, fraction));
+                let what = format!("fraction {fraction:.2}, {degrees} degrees, {s:?}");
                 assert!((got - want).abs() < limit, "{what}: {got}, {want}");
             }
         }
     }
 }
 
-/// Every mode of a ramp gives the share of what the same ramp gives where all light arrives.
+/// Every mode of a ramp gives the fraction of what the same ramp gives where all light arrives.
 #[test]
 fn strokes_follow_the_tones_of_ramps() {
     let grey = |part| Color::linear_rgb(part, part, part);

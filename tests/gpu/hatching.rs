@@ -18,8 +18,8 @@ pub fn plain(marks: HatchingMarks) -> Hatching {
         breaks: 0.0,
         wobble: 0.0,
         pressure: 0.0,
-        highlights: 1.0,
-        shadows: 0.0,
+        bare_above: 1.0,
+        solid_below: 0.0,
         ..inked(marks)
     }
 }
@@ -394,8 +394,8 @@ pub fn assert_marks_travel(s: Hatching, by: Vec3, limit: f64) {
     assert_eq!(small.errors(), 0);
 }
 
-/// The darkness without calm and with it.
-fn loud_and_calm(small: &mut Small) -> [Vec<f64>; 2] {
+/// The darkness without and with `simplify_small`.
+fn plain_and_simplified(small: &mut Small) -> [Vec<f64>; 2] {
     [0.0, 1.0].map(|simplify_small| {
         let s = Hatching {
             simplify_small,
@@ -405,9 +405,9 @@ fn loud_and_calm(small: &mut Small) -> [Vec<f64>; 2] {
     })
 }
 
-/// Truth: calm strokes are those of others on large surfaces, up to their edges.
+/// Truth: simplified strokes are those of others on large surfaces, up to their edges.
 #[test]
-fn calm_changes_nothing_on_large_surfaces() {
+fn simplification_changes_nothing_on_large_surfaces() {
     let mut small = empty();
     for (degrees, distance) in [(0.0, 7.0), (60.0, 31.0), (75.0, 50.0)] {
         small.clear();
@@ -417,10 +417,10 @@ fn calm_changes_nothing_on_large_surfaces() {
         let at = Transform::from_xyz(0.1, 0.0, -4.0).with_rotation(turn);
         let material = unlit(Color::linear_rgb(0.3, 0.3, 0.3));
         small.put(Cuboid::from_length(0.9), material, at);
-        let [loud, calm] = loud_and_calm(&mut small);
-        let apart = differ(&loud, &calm, 0.02);
-        println!("{degrees} degrees: {apart} of {} pixels differ", loud.len());
-        assert!(apart < loud.len() / 200, "{degrees} degrees: {apart}");
+        let [plain, simplified] = plain_and_simplified(&mut small);
+        let apart = differ(&plain, &simplified, 0.02);
+        println!("{degrees} degrees: {apart} of {} pixels differ", plain.len());
+        assert!(apart < plain.len() / 200, "{degrees} degrees: {apart}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -449,14 +449,14 @@ fn what_is_small_is_more_even() {
             .with_scale(Vec3::splat(4.0 * pixel * away));
         world.spawn((Object, card.clone(), material.clone(), at));
     }
-    let [loud, calm] = loud_and_calm(&mut small).map(|covers| {
+    let [plain, simplified] = plain_and_simplified(&mut small).map(|covers| {
         let middle = mean(&covers);
         let squares: Vec<f64> = covers.iter().map(|c| (c - middle).powi(2)).collect();
         (middle, mean(&squares).sqrt())
     });
-    println!("mean and spread: {loud:.3?}, {calm:.3?}");
-    assert!((loud.0 - calm.0).abs() < 0.03, "{loud:?}, {calm:?}");
-    assert!(calm.1 < loud.1, "{loud:?}, {calm:?}");
+    println!("mean and spread: {plain:.3?}, {simplified:.3?}");
+    assert!((plain.0 - simplified.0).abs() < 0.03, "{plain:?}, {simplified:?}");
+    assert!(simplified.1 < plain.1, "{plain:?}, {simplified:?}");
     assert_eq!(small.errors(), 0);
 }
 
@@ -464,8 +464,8 @@ fn what_is_small_is_more_even() {
 pub fn extreme(marks: HatchingMarks, x: f32) -> Hatching {
     Hatching {
         marks,
-        shadows: x,
-        highlights: x,
+        solid_below: x,
+        bare_above: x,
         gamma: x,
         tones: u32::MAX,
         spacing: x,

@@ -66,13 +66,13 @@ fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let (square, _) = spawn(&mut small, msaa);
         assert_eq!(sides(&mut small), [WHITE; 5]);
-        assert!(!small.ran(ComicsStage::MarkedObjects));
+        assert!(!small.ran(ComicsStage::HighlightedObjects));
         small.on(square).insert(green(1.0));
         for (i, color) in sides(&mut small).into_iter().enumerate() {
             let want = if i < 4 { GREEN } else { WHITE };
             assert!(alike(color, want), "{msaa:?}, {i}: {color:?}");
         }
-        assert!(small.ran(ComicsStage::MarkedObjects));
+        assert!(small.ran(ComicsStage::HighlightedObjects));
         // The line is as wide as asked: ink along a row through the middle. Of two lines, the ink
         // of four pixels is rounded, each by less than 0.01.
         let ink = black_ink(&small.picture(), (0..SIZE).map(|x| (x, 47)));
@@ -83,7 +83,7 @@ fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
         }
         small.on(square).remove::<SelectionOutline>();
         assert_eq!(sides(&mut small), [WHITE; 5]);
-        assert!(!small.ran(ComicsStage::MarkedObjects));
+        assert!(!small.ran(ComicsStage::HighlightedObjects));
         assert_eq!(small.errors(), 0);
     }
 }

@@ -276,7 +276,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
     }
 }
 
-/// A crease that the corrected equations finds is whole beside silhouettes of the faithful
+/// A crease that the corrected equations find is whole beside silhouettes of the faithful
 /// equations, whose threshold is one of raw depth and says nothing about a jump between surfaces.
 #[test]
 fn measured_creases_are_whole_beside_faithful_silhouettes() {

@@ -93,7 +93,7 @@ fn a_style_is_tuned_in_a_window() {
     copy_as_rust(&window);
     save_and_watch(&window);
     compare(&window);
-    look(&window);
+    compare_views(&window);
     photograph(&window);
     close(&window);
 }
@@ -169,7 +169,7 @@ fn a_style_is_compared_with_the_original() {
 fn debug_views_and_times_are_shown() {
     let window = hidden();
     open(&window);
-    look(&window);
+    compare_views(&window);
     close(&window);
 }
 
@@ -352,7 +352,7 @@ fn compare(window: &impl Session) {
 }
 
 /// A debug view and the measurements.
-fn look(window: &impl Session) {
+fn compare_views(window: &impl Session) {
     window.click("tab.Views");
     window.click("view.DepthMap");
     until_map(window);

@@ -398,7 +398,7 @@ fn everything(
     let style = ComicStyle::new()
         .with(Desaturation {
             amount: 0.7,
-            near: 0.2,
+            amount_near: 0.2,
             exponent: 0.5,
             equations: color,
         })
@@ -451,7 +451,7 @@ fn every_mapping_matches_the_reference() {
         ColorizationMode::KeepHue,
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
-        ColorizationMode::Quadratic,
+        ColorizationMode::SquareRoot,
     ];
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for (i, mapping) in mappings.into_iter().enumerate() {
@@ -557,7 +557,7 @@ fn multisampled_outlines_match_the_reference() {
 /// The two papers on one camera in one pass.
 #[test]
 fn everything_at_once_matches_the_reference() {
-    let both = corrected(ColorizationMode::Quadratic)
+    let both = corrected(ColorizationMode::SquareRoot)
         .with(ToneBands {
             levels: 5,
             softness: 0.0,
@@ -647,7 +647,7 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
             }),
             ..default()
         });
-        let style = corrected(ColorizationMode::Quadratic);
+        let style = corrected(ColorizationMode::SquareRoot);
         let styles = [(format!("{msaa:?}"), style)];
         check(&mut small, Some([13, 7, 51, 41]), styles);
     }
@@ -673,7 +673,7 @@ fn an_hdr_camera_matches_the_reference() {
     let form = Equations::Faithful;
     let faithful = everything(
         form,
-        ColorizationMode::Quadratic,
+        ColorizationMode::SquareRoot,
         form,
         DepthMapping::MinMax,
     );

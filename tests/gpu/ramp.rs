@@ -147,7 +147,7 @@ pub fn stage(light: &ToonLight) -> Small {
     small
 }
 
-/// Black, and white from the terminator, for each light: the light without a ramp.
+/// Black, and white from `shadow_threshold`, for each light: the light without a ramp.
 #[test]
 fn two_stops_per_light_are_the_light_without_a_ramp() {
     let mut small = stage(&ToonLight::default());
@@ -185,7 +185,7 @@ fn two_stops_per_light_are_the_light_without_a_ramp() {
 /// `Share` without the strength of the light: the exposure changes nothing, nor does a light
 /// that is divided in two.
 #[test]
-fn shares_do_not_depend_on_the_exposure() {
+fn fractions_do_not_depend_on_the_exposure() {
     let light = ToonLight {
         falloff: 1.0,
         ..with(Ramp {

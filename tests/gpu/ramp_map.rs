@@ -211,7 +211,7 @@ fn check_rows(modes: &[RampMode]) {
     }
 }
 
-/// Truth: rows are the second axis of shares of the light.
+/// Truth: rows are the second axis of fractions of the light.
 #[test]
 fn rows_are_the_second_axis() {
     check_rows(&MODES[..1]);
@@ -372,10 +372,10 @@ fn tones_follow_their_image() {
     }
 }
 
-/// A look names its image by its path, which is loaded with it, and read again when its file
+/// A shading names its image by its path, which is loaded with it, and read again when its file
 /// changes.
 #[test]
-fn looks_name_their_images_by_path() {
+fn shadings_name_their_images_by_path() {
     let folder = Folder::new("ramp-map");
     let file = folder.0.join("tones.png");
     greys(100).save(&file).expect("written");
@@ -384,17 +384,17 @@ fn looks_name_their_images_by_path() {
     std::fs::write(folder.0.join("hero.toon.ron"), text).expect("written");
     let mut small = watching(&folder);
     small.clear();
-    let look = load(&mut small, "hero.toon.ron");
-    let mesh = mesh_with_shading(&mut small, look.clone());
+    let shading = load(&mut small, "hero.toon.ron");
+    let mesh = mesh_with_shading(&mut small, shading.clone());
     let image = move |world: &World| {
         let handle = world.get::<MeshMaterial3d<ToonMaterial>>(mesh)?;
         let material = world.resource::<Assets<ToonMaterial>>().get(&handle.0)?;
         material.extension.ramp_map.image().cloned()
     };
     let loaded = wait(&mut small, 400, |world| image(world).is_some());
-    assert!(loaded, "the look did not load");
+    assert!(loaded, "the shading did not load");
     let server = small.world().resource::<AssetServer>().clone();
-    let is_loaded = |_: &mut World| server.is_loaded_with_dependencies(&look);
+    let is_loaded = |_: &mut World| server.is_loaded_with_dependencies(&shading);
     assert!(wait(&mut small, 400, is_loaded));
     let handle = image(small.world()).expect("an image");
     assert_eq!(handle.path().expect("of a file").to_string(), "tones.png");
@@ -419,10 +419,10 @@ fn looks_name_their_images_by_path() {
         grey(&mut small).abs_diff(200) <= 1
     });
     assert!(changed, "the change did not arrive");
-    // Without the component the material stays; the look is written with the path.
+    // Without the component the material stays; the shading is written with the path.
     small.world().entity_mut(mesh).remove::<ToonShadingHandle>();
-    let looks = small.world().resource::<Assets<ToonShading>>();
-    let text = looks.get(&look).expect("loaded").to_ron().expect("text");
+    let shadings = small.world().resource::<Assets<ToonShading>>();
+    let text = shadings.get(&shading).expect("loaded").to_ron().expect("text");
     assert!(text.contains("ramp_map: \"tones.png\""), "{text}");
     assert_eq!(small.errors(), 0);
 }

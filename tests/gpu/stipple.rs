@@ -204,7 +204,7 @@ fn dots_travel_with_their_object() {
 #[test]
 fn dots_stay_on_the_material() {
     let s = Hatching {
-        shadows: 0.0,
+        solid_below: 0.0,
         ..random()
     };
     assert_marks_stay(s);

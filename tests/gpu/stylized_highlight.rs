@@ -523,16 +523,16 @@ fn rimmed(width: RimWidth, lit_side: f32) -> ToonLight {
 /// Rims of a ball are rings of a known area.
 #[test]
 fn rims_are_as_wide_as_they_say() {
-    let share = 0.4;
+    let fraction = 0.4;
     let facing = RimWidth::Facing {
-        share,
+        fraction,
         softness: 0.0,
     };
     let mut small = ball(&rimmed(facing, 0.0), SIZE);
     small.insert(DepthPrepass);
     let all = std::f64::consts::PI * RADIUS * RADIUS;
     let (area, middle) = covered(&drawn(&mut small));
-    let wanted = all * f64::from(share * share);
+    let wanted = all * f64::from(fraction * fraction);
     assert!((area / wanted - 1.0).abs() < 0.02, "{area}, not {wanted}");
     assert!(middle.length() < 0.3);
     // Half of the strength is half of the light.
@@ -546,14 +546,14 @@ fn rims_are_as_wide_as_they_say() {
     let softness = 0.4;
     set_light(
         &mut small,
-        &rimmed(RimWidth::Facing { share, softness }, 0.0),
+        &rimmed(RimWidth::Facing { fraction, softness }, 0.0),
     );
     let soft = covers(&drawn(&mut small));
     let between = soft
         .iter()
         .filter(|cover| (0.1..0.9).contains(*cover))
         .count() as f64;
-    let wanted = all * f64::from(2.0 * share * softness) * (1.0 - 2.0 * 0.196);
+    let wanted = all * f64::from(2.0 * fraction * softness) * (1.0 - 2.0 * 0.196);
     assert!(
         (between / wanted - 1.0).abs() < 0.02,
         "{between}, not {wanted}"

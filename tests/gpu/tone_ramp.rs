@@ -51,7 +51,7 @@ fn tones_change_with_the_distance() {
 fn pictures_in_tones_match_the_reference() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     let hard = ToneRamp {
-        far_softness: 0.0,
+        distant_softness: 0.0,
         keep_color: 0.4,
         focus: 0.3,
         reach: 0.5,
@@ -117,14 +117,14 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
 fn flat_areas_at_an_edge_have_no_speckles() {
     let hard = ToneRamp {
         keep_color: 0.0,
-        far_softness: 0.0,
-        far_dark: ToneRamp::default().dark,
-        far_middle: ToneRamp::default().middle,
+        distant_softness: 0.0,
+        distant_dark: ToneRamp::default().dark,
+        distant_middle: ToneRamp::default().middle,
         ..ToneRamp::default()
     };
     let soft = ToneRamp {
         softness: 1.0,
-        far_softness: 1.0,
+        distant_softness: 1.0,
         ..hard
     };
     let mut small = room(UVec2::splat(64), 0.0);

@@ -241,7 +241,7 @@ fn check_shadows(samples: &[Msaa]) {
     }
 }
 
-/// The projected shadow that [CL] draws in the wrong place (its Figure 10).
+/// The cast shadow that [CL] draws in the wrong place (its Figure 10).
 #[test]
 fn cast_shadows_are_where_a_ray_cast_puts_them() {
     check_shadows(&[Msaa::Off]);
@@ -293,7 +293,7 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
                 Kind::Lamp(at) | Kind::Spot(at, _) => (at - n).normalize(),
             };
             let cosine = n.dot(towards);
-            // The default terminator lies at 0.08; ten bits and a pixel blur it.
+            // The default `shadow_threshold` is 0.08; ten bits and a pixel blur it.
             if (cosine - 0.08).abs() < 0.05 {
                 continue;
             }

@@ -94,7 +94,7 @@ const LISTS: &[&[Choice]] = &[
     ],
     &[
         &[],
-        &["RAMP_SHARE", "RAMP_STOPS=2"],
+        &["RAMP_LIGHT_FRACTION", "RAMP_STOPS=2"],
         &["RAMP_PER_LIGHT", "RAMP_STOPS=3"],
         &["RAMP_BRIGHTEST", "RAMP_STOPS=8"],
     ],
@@ -133,9 +133,9 @@ const LISTS: &[&[Choice]] = &[
     ],
     &[
         &[],
-        &["FORM", "FORM_UP"],
-        &["FORM", "FORM_NORMAL"],
-        &["FORM", "FORM_NORMAL", "FORM_SMOOTHED"],
+        &["PROXY", "PROXY_UP"],
+        &["PROXY", "PROXY_NORMAL"],
+        &["PROXY", "PROXY_NORMAL", "PROXY_SMOOTHED"],
     ],
     &[
         &[],

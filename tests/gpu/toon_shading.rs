@@ -112,7 +112,7 @@ pub fn all_kinds() -> Vec<ToonShading> {
     let widths = [
         RimWidth::Pixels(3.0),
         RimWidth::Facing {
-            share: 0.5,
+            fraction: 0.5,
             softness: 0.125,
         },
     ];

@@ -28,7 +28,7 @@ const WARNINGS: [&str; 10] = [
     "is a Camera2d",
     "has no colour target",
     "`LensDistortion` on",
-    "an effect of Bevy on the whole picture makes the overlay",
+    "a full-screen effect of Bevy makes the picture of the overlay",
     "do not fade in its fog",
     "`StyleMask::Picture`",
     "`RangeOf`",

@@ -196,7 +196,7 @@ fn figure_3(folder: &Path) -> Result<(), String> {
                 ..default()
             })
             .with(Colorization {
-                mode: ColorizationMode::Quadratic,
+                mode: ColorizationMode::SquareRoot,
                 color: Colorization::SEPIA.color,
                 ..default()
             })

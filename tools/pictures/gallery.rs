@@ -9,7 +9,7 @@ use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::Studio,
     style_work::{
-        LEAST_APART, LEAST_CONTRAST, LookBench, MOST_CLIPPED, MOST_FLICKER, MOST_FRAGMENTS,
+        LEAST_APART, LEAST_CONTRAST, StyleBench, MOST_CLIPPED, MOST_FLICKER, MOST_FRAGMENTS,
         Measures,
     },
 };
@@ -87,7 +87,7 @@ fn measure_in(
     looks: &[Preset],
     styles: &[ComicStyle],
 ) -> (Measures, Vec<(RgbaImage, Measures)>) {
-    let mut bench = LookBench::new(scene, UVec2::new(240, 135), FRAMES);
+    let mut bench = StyleBench::new(scene, UVec2::new(240, 135), FRAMES);
     let unstyled = bench.measure(None).1;
     let of = |(look, style): (&Preset, &ComicStyle)| {
         let (shot, measures) = bench.measure(Some(style));

@@ -43,8 +43,8 @@ fn on_paper() -> Hatching {
         paper: Color::srgb(0.98, 0.95, 0.88),
         ink: Color::srgb(0.12, 0.1, 0.16),
         spacing: 3.0,
-        shadows: 0.0,
-        highlights: 1.0,
+        solid_below: 0.0,
+        bare_above: 1.0,
         at_near: 0.8,
         ..default()
     }
@@ -66,8 +66,8 @@ pub fn picture() -> RgbaImage {
     let at = |k: usize, y: f32| Transform::from_xyz(-2.5 + 1.25 * k as f32, y, 0.0);
     let over_color = Hatching {
         spacing: 3.0,
-        shadows: 0.0,
-        highlights: 1.0,
+        solid_below: 0.0,
+        bare_above: 1.0,
         at_near: 0.8,
         ..default()
     };

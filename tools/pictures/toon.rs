@@ -275,7 +275,7 @@ fn rims() -> RgbaImage {
         })
     };
     let facing = RimWidth::Facing {
-        share: 0.4,
+        fraction: 0.4,
         softness: 0.0,
     };
     let cases = [None, rim(facing), rim(RimWidth::Pixels(5.0))];

@@ -132,7 +132,7 @@ pub fn dash_steps(run: &Run) -> Result<(), String> {
         if method == IN_SECTIONS {
             set_sections(lined.rig.headless.app.world_mut(), MeshSections::default());
         }
-        lined.rig.headless.step(30);
+        lined.rig.headless.step(if run.quick { 4 } else { 30 });
         let mut counts = Ends::default();
         for (frame, true_ends) in truth.iter().enumerate() {
             lined.turn(2.6, turned(frame));

@@ -10,7 +10,7 @@ use bevy_comics_testkit::{
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
     reference::{color, color_harmony::harmonize, halftone::Plate},
     screens::{
-        PERIODS, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire,
+        CELL_SIZES, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire,
         moire_of_inks, tone_error,
     },
     strokes::{largest_tone_step, mean_tone_error},
@@ -65,7 +65,7 @@ fn lightness_error(mode: HarmonyMode) -> f64 {
 /// Tones, jumps and moire of all screens.
 fn screens(run: &Run) -> Table {
     let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
-    let periods = if run.quick { &PERIODS[2..3] } else { &PERIODS };
+    let periods = if run.quick { &CELL_SIZES[2..3] } else { &CELL_SIZES };
     for shape in run.some(1, SHAPES) {
         for &period in periods {
             let (tone, ..) = tone_error(shape, period);

@@ -1,4 +1,4 @@
-//! What single parts cost: factors of lines, marked objects, and effects of the page.
+//! What single parts cost: factors of lines, highlighted objects, and effects of the page.
 
 use bevy::{
     anti_alias::taa::TemporalAntiAliasing,

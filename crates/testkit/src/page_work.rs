@@ -144,7 +144,7 @@ fn total(pixel: vec2<i32>) -> vec2<f32> {
 /// The ends of the passes: how their results are returned, and how counts are returned instead.
 const ENDS: [(&str, &str); 5] = [
     (
-        "return layer_color(p);",
+        "return pass_color(p);",
         "return vec4(total(pixel), p.color.r, 1.0);",
     ),
     (
@@ -158,7 +158,7 @@ const ENDS: [(&str, &str); 5] = [
          return vec4(vec2<u32>(total(pixel)), m.zw);",
     ),
     (
-        "return packed_number(layer_color(p), number_of(p));",
+        "return packed_number(pass_color(p), number_of(p));",
         "let n = packed_number(vec4(1.0), number_of(p));
          return vec4(u32(total(pixel).x), n.y, n.z, u32(total(pixel).y));",
     ),

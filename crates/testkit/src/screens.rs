@@ -24,8 +24,8 @@ pub const SHAPES: [ScreenShape; 6] = [
 /// The angles of the plates in degrees.
 pub const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
 
-/// Periods that are measured, in pixels.
-pub const PERIODS: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
+/// Sizes of cells that are measured, in pixels.
+pub const CELL_SIZES: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
 
 /// The tile of 64 x 64 grains that the crate prints with: the classes of their thresholds.
 pub(crate) const TILE: &[u8; 4096] = include_bytes!("../../../src/fused/blue_noise.bin");
@@ -37,20 +37,20 @@ pub fn tile(x: i64, y: i64) -> f64 {
 }
 
 /// A plate of a screen that begins in the middle.
-pub fn plate(degrees: f64, period: f64) -> Plate {
+pub fn plate(degrees: f64, cell_size: f64) -> Plate {
     Plate {
         degrees,
-        period,
+        cell_size,
         phase: 0.0,
         number: 0,
-        spread: 0.0,
+        ink_bleed: 0.0,
         height: 0.0,
     }
 }
 
-/// Pixels of a square whose side is a multiple of the period, around where screens begin.
-pub fn square(period: f64) -> impl Iterator<Item = [f64; 2]> + Clone {
-    let side = (period * (250.0 / period).floor()).round() as i32;
+/// Pixels of a square whose side is a multiple of `cell_size`, around where screens begin.
+pub fn square(cell_size: f64) -> impl Iterator<Item = [f64; 2]> + Clone {
+    let side = (cell_size * (250.0 / cell_size).floor()).round() as i32;
     (0..side)
         .flat_map(move |y| (0..side).map(move |x| [x, y].map(|v| f64::from(v - side / 2) + 0.25)))
 }
@@ -83,12 +83,12 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Of 11 tones at four angles, the one whose print departs most from it: (mean of a flat area
 /// less its tone, tone, degrees).
-pub fn tone_error(shape: ScreenShape, period: f64) -> (f64, f64, f64) {
+pub fn tone_error(shape: ScreenShape, cell_size: f64) -> (f64, f64, f64) {
     let mut most = (0.0, 0.0, 0.0);
     for degrees in ANGLES {
         for tone in (0..=10).map(|i| f64::from(i) / 10.0) {
-            let cover = plate_cover(shape, plate(degrees, period), tone, &tile);
-            let error = mean(square(period).map(cover)) - tone;
+            let cover = plate_cover(shape, plate(degrees, cell_size), tone, &tile);
+            let error = mean(square(cell_size).map(cover)) - tone;
             if error.abs() > f64::abs(most.0) {
                 most = (error, tone, degrees);
             }
@@ -99,7 +99,7 @@ pub fn tone_error(shape: ScreenShape, period: f64) -> (f64, f64, f64) {
 
 /// The largest change of a pixel when the tone changes by 1 / 1024, of 300 pixels and all tones:
 /// (change, tone).
-pub fn largest_jump(shape: ScreenShape, period: f64) -> (f64, f64) {
+pub fn largest_jump(shape: ScreenShape, cell_size: f64) -> (f64, f64) {
     let places: Vec<_> = (0..300)
         .map(|i| [f64::from(i) * 1.618 % 50.0, f64::from(i) * 2.414 % 50.0])
         .collect();
@@ -107,7 +107,7 @@ pub fn largest_jump(shape: ScreenShape, period: f64) -> (f64, f64) {
     let mut most = (0.0, 0.0);
     for step in 0..=1024 {
         let tone = f64::from(step) / 1024.0;
-        let cover = plate_cover(shape, plate(15.0, period), tone, &tile);
+        let cover = plate_cover(shape, plate(15.0, cell_size), tone, &tile);
         for (place, before) in places.iter().zip(&mut before) {
             let k = cover(*place);
             if (k - *before).abs() > most.0 {
@@ -124,10 +124,10 @@ const SIDE: usize = 240;
 
 /// The tone of a picture at a place from its middle, as it is stored: in 8 bits. A slow gradient,
 /// or rings that become finer towards the border (`zones`).
-fn picture_tone([x, y]: [f64; 2], period: f64, zones: bool) -> f64 {
+fn picture_tone([x, y]: [f64; 2], cell_size: f64, zones: bool) -> f64 {
     let tone = if zones {
         // At the border: a period of 12 cells.
-        let frequency = 1.0 / (12.0 * period);
+        let frequency = 1.0 / (12.0 * cell_size);
         let square = (x * x + y * y) / (SIDE as f64 / 2.0);
         0.5 + 0.35 * (0.5 * TAU * frequency * square).cos()
     } else {
@@ -138,23 +138,23 @@ fn picture_tone([x, y]: [f64; 2], period: f64, zones: bool) -> f64 {
 
 /// The part of the power of a print less its picture that is below half of the screen's frequency.
 /// `rest`: the print less the picture, at a place where the picture has a tone.
-fn slow_part(period: f64, zones: bool, rest: impl Fn([f64; 2], f64) -> f64) -> f64 {
+fn slow_part(cell_size: f64, zones: bool, rest: impl Fn([f64; 2], f64) -> f64) -> f64 {
     let place = |i: usize| [i % SIDE, i / SIDE].map(|v| v as f64 + 0.25 - SIDE as f64 / 2.0);
     let rest: Vec<f64> = (0..SIDE * SIDE)
-        .map(|i| rest(place(i), picture_tone(place(i), period, zones)))
+        .map(|i| rest(place(i), picture_tone(place(i), cell_size, zones)))
         .collect();
     let power = mean(rest.iter().map(|v| v * v));
-    let slow = blurred(&rest, SIDE, 1.2 * period);
-    let margin = (3.0 * period) as usize;
+    let slow = blurred(&rest, SIDE, 1.2 * cell_size);
+    let margin = (3.0 * cell_size) as usize;
     let inside =
         (margin..SIDE - margin).flat_map(|y| (margin..SIDE - margin).map(move |x| y * SIDE + x));
     mean(inside.map(|i| slow[i] * slow[i])) / power
 }
 
 /// The slow part of a print with one plate, of a gradient or of rings.
-pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 {
-    slow_part(period, zones, |place, tone| {
-        plate_cover(shape, plate(degrees, period), tone, &tile)(place) - tone
+pub fn moire(shape: ScreenShape, cell_size: f64, degrees: f64, zones: bool) -> f64 {
+    slow_part(cell_size, zones, |place, tone| {
+        plate_cover(shape, plate(degrees, cell_size), tone, &tile)(place) - tone
     })
 }
 

@@ -86,7 +86,7 @@ impl Measures {
 }
 
 /// A scene in which styles are measured.
-pub struct LookBench {
+pub struct StyleBench {
     pub studio: Studio,
     /// The plane of each pixel: 0 near, 1 middle, 2 far; `None` for the sky.
     planes: Vec<Option<u8>>,
@@ -95,7 +95,7 @@ pub struct LookBench {
     pub count_fragments: bool,
 }
 
-impl LookBench {
+impl StyleBench {
     /// `frames` on the turntable.
     pub fn new(scene: BuiltIn, size: UVec2, frames: usize) -> Self {
         let mut studio = Studio::new(scene, size, Msaa::Sample4);

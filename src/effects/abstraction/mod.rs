@@ -14,11 +14,12 @@ use crate::{
     settings::FieldRange,
 };
 
-/// One dial for how abstract the picture is at every distance, from 0 (all detail) to 1: tone
-/// bands, lines, hatching and saturation follow it (after X-Toon, Barla et al. 2006).
+/// Sets how abstract the picture is at every distance, from 0 (all detail) to 1. Tone bands, lines,
+/// hatching and saturation follow this value (after X-Toon, Barla et al. 2006).
 ///
-/// Nothing pops when things come nearer: bands split in two, so that the borders of few bands are
-/// borders of many too; strokes grow between others; and lines become stronger with their edges.
+/// Detail appears gradually as things come nearer: bands split in two, so that existing borders
+/// stay where they are; new strokes grow between the old ones; and lines become stronger with their
+/// edges.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -37,9 +38,9 @@ pub struct Abstraction {
     /// and lines, or as its [`ObjectSimplification`](crate::objects::ObjectSimplification) says.
     /// Default: [`Granularity::Object`]. Without compute shaders, lines follow pixels.
     pub granularity: Granularity,
-    /// How often the bands of [`ToneBands`](crate::ToneBands) split from full abstraction, where
-    /// there are `levels` of them, to none, with the corrected equations: at 1, there are twice as
-    /// many. Range 0 to 3, default 1.
+    /// How many times the bands of [`ToneBands`](crate::ToneBands) split between full abstraction,
+    /// where there are `levels` of them, and none: 1 doubles their number. Needs the corrected
+    /// equations. Range 0 to 3, default 1.
     #[reflect(@FieldRange::linear(0.0, 3.0))]
     pub band_splits: f32,
     /// Factor of [`Hatching::spacing`](crate::Hatching::spacing) at full abstraction. Range 1 to 4,

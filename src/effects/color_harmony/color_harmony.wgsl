@@ -25,7 +25,7 @@ struct ColorHarmony {
     offset: f32,
     amount: f32,
     mode: u32,
-    quadratic: u32,
+    square_root: u32,
     faithful: u32,
 }
 
@@ -47,12 +47,12 @@ fn is_faithful(s: ColorHarmony) -> bool {
 #endif
 }
 
-fn is_quadratic(s: ColorHarmony) -> bool {
-#ifdef EFFECT_COLOR_HARMONY_QUADRATIC
-    let compiled = #{EFFECT_COLOR_HARMONY_QUADRATIC}u;
+fn is_square_root(s: ColorHarmony) -> bool {
+#ifdef EFFECT_COLOR_HARMONY_SQUARE_ROOT
+    let compiled = #{EFFECT_COLOR_HARMONY_SQUARE_ROOT}u;
     return compiled != 0u;
 #else
-    return s.quadratic != 0u;
+    return s.square_root != 0u;
 #endif
 }
 
@@ -63,7 +63,7 @@ fn complement_weight(s: ColorHarmony, lightness: f32, d: f32, l: f32) -> f32 {
         let dark = 1.0 - clamp(lightness, 0.0, 1.0);
         return s.shade * dark * dark;
     }
-    if is_quadratic(s) {
+    if is_square_root(s) {
         return root_fraction(d, l);
     }
     return d;

@@ -33,8 +33,8 @@ pub struct ColorHarmony {
     /// become grey. Range 0 to 1.5, default 0.8.
     #[reflect(@FieldRange::linear(0.0, 1.5))]
     pub complement: f32,
-    /// How far black is on the way to its opposite colour, in the mode [`HarmonyMode::Shade`]:
-    /// lighter colours by the square of their darkness. Range 0 to 1, default 0.35.
+    /// How far the darkest colours move towards their opposite, in the mode [`HarmonyMode::Shade`].
+    /// Lighter colours move less, by the square of their darkness. Range 0 to 1, default 0.35.
     #[reflect(@FieldRange::FRACTION)]
     pub shade: f32,
     /// One of the two hues of [`HarmonyMode::TwoHues`]; the other is its opposite. Only the hue
@@ -69,15 +69,15 @@ pub struct ColorHarmony {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum HarmonyMode {
-    /// All hues are drawn to two that lie opposite each other; one of them is stronger in front,
-    /// the other in the distance.
+    /// All hues move towards two opposite hues, one stronger in the foreground, the other in the
+    /// distance.
     #[default]
     TwoHues,
     /// Near things keep their hues, and far things take the opposite ones; in between they are
     /// grey.
     Distance,
-    /// Near things keep their hues, and far things take the opposite ones; in between they take
-    /// those that lie between on the wheel.
+    /// Near things keep their hues, and far things take the opposite ones; in between, hues turn
+    /// around the colour wheel.
     Rotation,
     /// Dark colours take some of their opposite, as in the shadows of painters.
     Shade,
@@ -172,7 +172,7 @@ impl Effect for ColorHarmony {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode_number());
-        variants.number("QUADRATIC", u32::from(self.is_quadratic()));
+        variants.number("SQUARE_ROOT", u32::from(self.is_square_root()));
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
     }
 
@@ -191,7 +191,7 @@ impl Effect for ColorHarmony {
             offset: self.offset,
             amount: self.amount,
             mode: self.mode_number(),
-            quadratic: u32::from(self.is_quadratic()),
+            square_root: u32::from(self.is_square_root()),
             faithful: u32::from(self.is_faithful()),
         }
     }
@@ -208,8 +208,8 @@ impl ColorHarmony {
         }
     }
 
-    /// Whether the curve is compiled in as quadratic: only the modes that have one.
-    fn is_quadratic(&self) -> bool {
+    /// Whether the compiled curve is the square root: only in modes that have a curve.
+    fn is_square_root(&self) -> bool {
         let follows_depth = matches!(self.mode, HarmonyMode::Distance | HarmonyMode::Rotation);
         follows_depth && self.curve == HarmonyCurve::SquareRoot
     }
@@ -229,6 +229,6 @@ pub struct ColorHarmonyUniform {
     offset: f32,
     amount: f32,
     mode: u32,
-    quadratic: u32,
+    square_root: u32,
     faithful: u32,
 }

@@ -9,7 +9,7 @@
 const MODE_HUE: u32 = 0u;
 const MODE_ATMOSPHERE: u32 = 1u;
 const MODE_LINEAR: u32 = 2u;
-const MODE_QUADRATIC: u32 = 3u;
+const MODE_SQUARE_ROOT: u32 = 3u;
 
 struct Colorization {
     // Direction of the atmosphere's chroma in OKLab: a unit vector (a, b).
@@ -65,7 +65,7 @@ fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3
     var hue = s.hue;
     if mode_of(s) == MODE_LINEAR {
         hue = fract(hue_of(c) * l + s.hue * d);
-    } else if mode_of(s) == MODE_QUADRATIC {
+    } else if mode_of(s) == MODE_SQUARE_ROOT {
         hue = fract(hue_of(c) * sqrt(max(l, 0.0)) + s.hue * sqrt(max(d, 0.0)));
     }
     let tinted = vec3(value) - chroma * (1.0 - hue_color(hue));

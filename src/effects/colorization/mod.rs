@@ -25,7 +25,7 @@ use crate::{
 pub struct Colorization {
     /// Selects where the picture takes the hue of the atmosphere: nowhere,
     /// everywhere, or increasingly with distance. Default:
-    /// [`ColorizationMode::Quadratic`].
+    /// [`ColorizationMode::SquareRoot`].
     pub mode: ColorizationMode,
     /// Colour of the atmosphere. [`Equations::Corrected`] uses its hue and saturation: at
     /// full effect, a grey of the same lightness becomes this colour.
@@ -62,7 +62,7 @@ pub enum ColorizationMode {
     /// Near things keep their hues; the atmosphere increases with the square root of
     /// the depth map, fast in the foreground (Eq. 11).
     #[default]
-    Quadratic,
+    SquareRoot,
 }
 
 const DEFAULT_COLOR: Color = Color::srgb(200.0 / 255.0, 65.0 / 255.0, 58.0 / 255.0);
@@ -91,7 +91,7 @@ impl Colorization {
     pub fn depends_on_depth(&self) -> bool {
         matches!(
             self.mode,
-            ColorizationMode::Linear | ColorizationMode::Quadratic
+            ColorizationMode::Linear | ColorizationMode::SquareRoot
         )
     }
 
@@ -101,7 +101,7 @@ impl Colorization {
             ColorizationMode::KeepHue => 0,
             ColorizationMode::Atmosphere => 1,
             ColorizationMode::Linear => 2,
-            ColorizationMode::Quadratic => 3,
+            ColorizationMode::SquareRoot => 3,
         }
     }
 

@@ -24,7 +24,7 @@ struct LayerColors {
     // Number of tones; below 1: all.
     bands: f32,
     // Factors of hatching, and of screens.
-    prints: vec2<f32>,
+    print_factors: vec2<f32>,
 }
 
 struct DepthLayers {
@@ -127,8 +127,10 @@ fn depth_layers(s: DepthLayers, p: Pixel) -> Pixel {
     let opacity = max(p.alpha, 1e-3);
     let w = pixel_weights(s, p);
     out.color = layers_color(s, p.color / opacity, w, p.change) * p.alpha;
-    let prints = w.x * s.foreground.prints + w.y * s.middle.prints + w.z * s.background.prints;
-    out.prints = p.prints * mix(vec2(1.0), prints, s.amount);
+    let print_factors = w.x * s.foreground.print_factors
+        + w.y * s.middle.print_factors
+        + w.z * s.background.print_factors;
+    out.print_factors = p.print_factors * mix(vec2(1.0), print_factors, s.amount);
     return out;
 }
 

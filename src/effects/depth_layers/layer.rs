@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, HueWheel, blend_color, clamp_fields, color_serde};
 
-/// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). With the defaults, the
-/// layer stays as it is.
+/// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). The default changes
+/// nothing.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -25,8 +25,8 @@ pub struct DepthLayer {
     #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub tint: Color,
-    /// How much of the colour comes from `tint`: at 1, all of it, and only the lightness is that
-    /// of the picture. Range 0 to 1, default 0.
+    /// How much of the colour comes from `tint`. At 1, only the lightness of the picture is left.
+    /// Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub tint_amount: f32,
     /// Factor of the contrast, about a lightness of 0.5 in `OKLab`. Range 0 to 2, default 1.
@@ -123,7 +123,7 @@ impl DepthLayer {
             contrast: self.contrast,
             shift: PIVOT * (1.0 - self.contrast) + self.brightness,
             bands: self.bands as f32,
-            prints: Vec2::new(self.hatching, self.halftone),
+            print_factors: Vec2::new(self.hatching, self.halftone),
         }
     }
 }
@@ -142,5 +142,5 @@ pub struct LayerColorsUniform {
     contrast: f32,
     shift: f32,
     bands: f32,
-    prints: Vec2,
+    print_factors: Vec2,
 }

@@ -61,10 +61,10 @@ pub struct DepthLayers {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum LayerBorders {
-    /// Where the visible distances fall into three groups (Otsu 1979): the borders explain as much
-    /// as possible of the variance of the logarithm of distance. They move when others explain 5 %
-    /// more, over the time constant of `RangeSmoothing::shrink`, and at once at a `CameraCut`.
-    /// Without compute shaders, as [`LayerBorders::Fixed`].
+    /// At the borders that best divide the visible distances into three groups: those that explain
+    /// most of the variance of the logarithm of distance (Otsu 1979). They move only when other
+    /// borders explain 5 % more, with the time constant of `RangeSmoothing::shrink`, or at once at
+    /// a `CameraCut`. Without compute shaders, as [`LayerBorders::Fixed`].
     #[default]
     Auto,
     /// At `foreground_end` and `background_start` of the depth map.
@@ -78,11 +78,11 @@ pub enum LayerBorders {
 #[non_exhaustive]
 pub enum Granularity {
     /// An object, by the depth of its centre, so that no figure is cut in two. An object that
-    /// extends over more than 0.4 of the depth map, such as the ground, is divided by pixels; below
-    /// 0.25 it is whole, and between the two it is divided in part. An object changes its layer
-    /// only when its centre has moved by 0.03 of the depth map, or by 15 % of its depth in it if
-    /// that is less. The meshes of an `OutlineGroup` are one object. Needs object ids, which are
-    /// drawn; without the crate's feature `objects`, as [`Granularity::Pixel`].
+    /// extends over more than 0.4 of the depth map, such as the ground, is divided by pixels; one
+    /// that extends over less than 0.25 stays whole, and in between the two are blended. An object
+    /// changes its layer only when its centre has moved by 0.03 of the depth map, or by 15 % of its
+    /// depth in it if that is less. The meshes of an `OutlineGroup` are one object. Needs object
+    /// ids, which are drawn; without the crate's feature `objects`, as [`Granularity::Pixel`].
     #[default]
     Object,
     /// A pixel.

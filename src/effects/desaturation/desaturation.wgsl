@@ -11,7 +11,7 @@ const CURVE_POWER: u32 = 2u;
 
 struct Desaturation {
     amount: f32,
-    near: f32,
+    amount_near: f32,
     exponent: f32,
     // Formula of the exponent: CURVE_LINEAR (1), CURVE_ROOT (0.5) or CURVE_POWER
     // (any).
@@ -48,7 +48,7 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
     } else if curve == CURVE_POWER {
         k = select(pow(max(l, 1e-30), s.exponent), 0.0, l <= 0.0);
     }
-    return 1.0 - mix(s.near, s.amount, 1.0 - k);
+    return 1.0 - mix(s.amount_near, s.amount, 1.0 - k);
 }
 
 // Mixes a colour with grey; `k` is the fraction of the saturation that remains. The

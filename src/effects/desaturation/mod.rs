@@ -25,7 +25,7 @@ pub struct Desaturation {
     /// Fraction of the saturation that is lost at the near end. With the same `amount`, all distances
     /// lose the same. Range 0 to 1, default 0. At 0 for both, the effect is left out.
     #[reflect(@FieldRange::FRACTION)]
-    pub near: f32,
+    pub amount_near: f32,
     /// Shapes the loss of saturation with distance: `(1 - D)` to the power of this
     /// exponent remains. Below 1, colours last longer and are lost late. Range 0.25
     /// to 4, default 1. Source: \[CS\] Eq. 6 (1) and Eq. 7 (0.5).
@@ -42,7 +42,7 @@ impl Default for Desaturation {
     fn default() -> Self {
         Self {
             amount: 1.0,
-            near: 0.0,
+            amount_near: 0.0,
             exponent: 1.0,
             equations: Equations::Corrected,
         }
@@ -54,15 +54,15 @@ impl Desaturation {
     /// as printed).
     pub const LINEAR: Self = Self {
         amount: 1.0,
-        near: 0.0,
+        amount_near: 0.0,
         exponent: 1.0,
         equations: Equations::Faithful,
     };
     /// Saturation falls with the square root of `1 - D`; HSV value is kept (\[CS\]
     /// Eq. 7 as printed).
-    pub const QUADRATIC: Self = Self {
+    pub const SQUARE_ROOT: Self = Self {
         amount: 1.0,
-        near: 0.0,
+        amount_near: 0.0,
         exponent: 0.5,
         equations: Equations::Faithful,
     };
@@ -79,13 +79,13 @@ impl Effect for Desaturation {
     type Uniform = DesaturationUniform;
 
     fn strength(&self) -> f32 {
-        self.amount.max(self.near)
+        self.amount.max(self.amount_near)
     }
 
     fn faded(self, fraction: f32) -> Self {
         Self {
             amount: self.amount * fraction,
-            near: self.near * fraction,
+            amount_near: self.amount_near * fraction,
             ..self
         }
     }
@@ -102,7 +102,7 @@ impl Effect for Desaturation {
     fn uniform(&self, _: &EffectContext) -> DesaturationUniform {
         DesaturationUniform {
             amount: self.amount,
-            near: self.near,
+            amount_near: self.amount_near,
             exponent: self.exponent,
             curve: self.curve(),
             faithful: u32::from(self.is_faithful()),
@@ -129,7 +129,7 @@ impl Desaturation {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct DesaturationUniform {
     amount: f32,
-    near: f32,
+    amount_near: f32,
     exponent: f32,
     curve: u32,
     faithful: u32,

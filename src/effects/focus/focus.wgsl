@@ -42,8 +42,8 @@ struct Focus {
     radius: f32,
     // 1: the focus is at what the middle of the view shows.
     at_centre: u32,
-    // DOTS: where the screens begin in the render target, their period in physical pixels, and
-    // how much of them is seen where all is out of focus.
+    // DOTS: where the screens begin in the render target, the size of their cells in physical
+    // pixels, and how much of them is seen where all is out of focus.
     center: vec2<f32>,
     cell_size: f32,
     amount: f32,

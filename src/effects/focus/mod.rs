@@ -14,13 +14,13 @@ use crate::{
     settings::FieldRange,
 };
 
-/// Draws the reader's eye to a distance: what is nearer or farther is out of focus. Drawn after
-/// the effects of colour, before prints and lines.
+/// Puts one distance into focus: what is nearer or farther is blurred, painted, printed out of
+/// register or in dots, or loses its lines. Drawn after the effects of colour, before prints and
+/// lines.
 ///
-/// As in a comic, and unlike a lens, the outline between what is sharp and what is not stays
-/// sharp: a sharp figure does not flow into what is out of focus behind it, and what is out of
-/// focus in front does not flow over what is sharp behind it. Things that are both out of focus
-/// flow into each other.
+/// As in a comic, and unlike with a lens, the boundary between sharp and blurred areas stays sharp:
+/// a sharp figure does not bleed into the blurred background, and a blurred foreground does not
+/// bleed over a sharp figure. Only areas that are both out of focus blend into each other.
 ///
 /// How far something is out of focus depends on the ratio of its distance to that of the
 /// focus, so it does not depend on the unit of the world. In an orthographic view it depends on
@@ -38,12 +38,12 @@ pub struct Focus {
     /// 10.
     #[reflect(@FieldRange::logarithmic(0.01, 100_000.0))]
     pub distance: f32,
-    /// How far from the focus everything is sharp: natural logarithm of the ratio of distances.
-    /// 0.15 is from 14 % nearer to 16 % farther. Range 0 to 4, default 0.15.
+    /// Range around the focus in which everything is sharp, as the natural logarithm of the ratio
+    /// of distances: 0.15 is from 14 % nearer to 16 % farther. Range 0 to 4, default 0.15.
     #[reflect(@FieldRange::linear(0.0, 4.0))]
     pub clear: f32,
-    /// How far behind that the largest radius is reached; as `clear`. 1 is a factor of 2.7 in
-    /// distance. Range 0.05 (at once) to 8, default 1.
+    /// How far beyond that range the largest radius is reached, in the unit of `clear`: 1 is a
+    /// factor of 2.7 in distance. Range 0.05 (at once) to 8, default 1.
     #[reflect(@FieldRange::linear(0.05, 8.0))]
     pub ramp: f32,
     /// Largest radius in logical pixels. Range 0 (the effect is left out) to 24, default 6. At
@@ -92,8 +92,8 @@ pub enum FocusStyle {
     /// focus, plain tones become dots. Reads no other pixels. The view is styled after FXAA and
     /// SMAA. A [`Halftone`](crate::Halftone) of the camera prints over it.
     Dots,
-    /// Only lines fade: they become thinner and fainter, down to nothing. Lines of the faithful
-    /// forms do not. Needs compute shaders.
+    /// Colours stay sharp; lines become thinner and fainter until they vanish. Lines of the
+    /// faithful equations do not. Needs compute shaders.
     Lines,
 }
 

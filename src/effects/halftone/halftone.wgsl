@@ -6,8 +6,8 @@
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
-    LEAST, cross_lines, diamond, diamond_edges, disc, disc_edges, euclidean, euclidean_edges,
-    gained, grain_covers, line, paler, spread_tone, tinted,
+    LEAST, bled_tone, cross_lines, diamond, diamond_edges, disc, disc_edges, euclidean,
+    euclidean_edges, gained, grain_covers, line, paler, tinted,
 }
 #import bevy_comics::effect::sheet::sheet_height
 #ifdef EFFECT_HALFTONE_CELLS
@@ -35,7 +35,7 @@ const SHAPE_STOCHASTIC: u32 = 5u;
 
 struct Halftone {
     // Cosines and sines of the angles of the plates (cyan, magenta, yellow, black),
-    // divided by the period.
+    // divided by the size of a cell.
     cosines: vec4<f32>,
     sines: vec4<f32>,
     // Light that each ink takes away, in w: unused.
@@ -47,7 +47,7 @@ struct Halftone {
     opacity: f32,
     // Where the screens begin: physical pixels in the render target.
     center: vec2<f32>,
-    // Physical pixels: period of the screens, and size of a grain.
+    // Physical pixels: size of a cell of the screens, and of a grain.
     cell_size: f32,
     grain: f32,
     // Fraction of the screens at the near and the far end of the depth map.
@@ -59,7 +59,7 @@ struct Halftone {
     gain: f32,
     tints: f32,
     // Lightness that is printed solid, and 1 / the difference to that of bare paper.
-    shadows: f32,
+    solid_below: f32,
     contrast: f32,
     // Duotone: darkness at which the first ink is solid.
     pivot: f32,
@@ -68,7 +68,7 @@ struct Halftone {
     // The sheet: its number, by how many physical pixels edges are displaced at most, and places
     // on it per physical pixel.
     sheet: u32,
-    spread: f32,
+    ink_bleed: f32,
     sheet_scale: f32,
     // Where the sheet begins in the render target, in physical pixels.
     sheet_corner: vec2<f32>,
@@ -121,18 +121,18 @@ fn spreads(s: Halftone) -> bool {
     let compiled = #{EFFECT_HALFTONE_SPREADS}u;
     return compiled == 1u;
 #else
-    return s.spread > 0.0;
+    return s.ink_bleed > 0.0;
 #endif
 }
 
-// A colour in linear light with its lightness stretched from shadows to highlights.
+// A colour in linear light: lightness from `solid_below` to `bare_above` is stretched to all of it.
 fn stretched(s: Halftone, color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3(0.0), vec3(1.0));
     if !adjusts(s) {
         return c;
     }
-    let level = clamp((sqrt(c) - s.shadows) * s.contrast, vec3(0.0), vec3(1.0));
-    return select(level * level, c, s.shadows == 0.0 && s.contrast == 1.0);
+    let level = clamp((sqrt(c) - s.solid_below) * s.contrast, vec3(0.0), vec3(1.0));
+    return select(level * level, c, s.solid_below == 0.0 && s.contrast == 1.0);
 }
 
 fn printed_tone(s: Halftone, tone: f32) -> f32 {
@@ -165,7 +165,7 @@ fn plate_tones(s: Halftone, color: vec3<f32>) -> vec4<f32> {
     );
 }
 
-// Coordinates of a place in the cells of a plate. `turn`: cosine and sine / period.
+// Coordinates of a place in the cells of a plate. `turn`: cosine and sine / cell size.
 fn cell_at(place: vec2<f32>, turn: vec2<f32>, phase: f32) -> vec2<f32> {
     return vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) + phase;
 }
@@ -195,8 +195,8 @@ fn height_under(s: Halftone, p: Pixel) -> f32 {
     return sheet_height((p.position - s.sheet_corner) * s.sheet_scale, s.sheet);
 }
 
-// Length of the edges of a shape in a cell, in periods. Of grains, it is that of squares that are
-// a third of a period wide and printed at random.
+// Length of the edges of a shape in a cell, in cell sizes. Of grains, it is that of squares that
+// are a third of a cell wide and printed at random.
 fn edges(shape: u32, tone: f32) -> f32 {
     if shape == SHAPE_ROUND {
         return disc_edges(tone);
@@ -218,10 +218,10 @@ fn tone_on_sheet(s: Halftone, on: Screen, tone: f32, cell_size: f32) -> f32 {
     if !spreads(s) {
         return t;
     }
-    return spread_tone(t, edges(shape_of(s), t), s.spread / cell_size, on.height);
+    return bled_tone(t, edges(shape_of(s), t), s.ink_bleed / cell_size, on.height);
 }
 
-// Cosine and sine of the angle of a plate, divided by its period.
+// Cosine and sine of the angle of a plate, divided by the size of its cells.
 fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
     let own = vec2(s.cosines[plate], s.sines[plate]);
 #ifdef EFFECT_HALFTONE_FOLLOWS
@@ -379,7 +379,7 @@ fn halftone(s: Halftone, p: Pixel) -> Pixel {
     var out = p;
     let color = p.color / max(p.alpha, 1e-3);
     let tones = plate_tones(s, color);
-    let amount = screen_amount(s, color, p.depth.x) * p.prints.y;
+    let amount = screen_amount(s, color, p.depth.x) * p.print_factors.y;
 #ifdef EFFECT_HALFTONE_FOLLOWS
     let k = followed_covers(s, p, color, amount, tones);
 #else

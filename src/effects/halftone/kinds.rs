@@ -48,7 +48,7 @@ pub enum ScreenShape {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ScreenSampling {
-    /// At every pixel: a dot takes the shape of what it covers, details stay sharp.
+    /// At every pixel: dots are cut off at the edges of things, so details stay sharp.
     #[default]
     Pixel,
     /// At four places of the cell: dots are whole. Reads the picture four times for each

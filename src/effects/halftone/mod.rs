@@ -56,11 +56,11 @@ pub struct Halftone {
     pub tints: u32,
     /// Lightness (0 black, 1 white) up to which ink is solid. Range 0 to 0.9, default 0.
     #[reflect(@FieldRange::linear(0.0, 0.9))]
-    pub shadows: f32,
-    /// Lightness from which the paper stays bare, at least 0.05 more than `shadows`.
+    pub solid_below: f32,
+    /// Lightness from which the paper stays bare, at least 0.05 more than `solid_below`.
     /// Range 0.1 to 1, default 1.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
-    pub highlights: f32,
+    pub bare_above: f32,
     /// Where the tone of a dot is read. Default: [`ScreenSampling::Pixel`].
     pub sampling: ScreenSampling,
     /// How much of the screens is seen at the near end of the depth map; the rest is
@@ -203,13 +203,13 @@ impl Effect for Halftone {
             black_generation: self.black_generation,
             gain: self.gain,
             tints: self.tints as f32,
-            shadows: self.shadows,
-            contrast: 1.0 / (self.highlights - self.shadows).max(0.05),
+            solid_below: self.solid_below,
+            contrast: 1.0 / (self.bare_above - self.solid_below).max(0.05),
             pivot: (1.0 - luminance).clamp(0.05, 0.95),
             mode: self.mode as u32,
             shape: self.shape as u32,
             sheet: view.sheet.map_or(0, |sheet| sheet.seed),
-            spread: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.ink_bleed),
+            ink_bleed: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.ink_bleed),
             sheet_scale: view.sheet.map_or(0.0, |sheet| sheet.scale),
             sheet_corner: view.sheet.map_or(Vec2::ZERO, |sheet| sheet.corner),
             clip_from_world: view.clip_from_world,
@@ -225,7 +225,7 @@ impl Halftone {
 
     /// Whether tones, levels or screens depend on more than the colour.
     fn adjusts(&self) -> bool {
-        let levels = self.shadows > 0.0 || self.highlights < 1.0;
+        let levels = self.solid_below > 0.0 || self.bare_above < 1.0;
         levels || self.tints > 0 || self.gain > 0.0 || self.shadows_only_below < 1.0
     }
 
@@ -277,13 +277,13 @@ pub struct HalftoneUniform {
     black_generation: f32,
     gain: f32,
     tints: f32,
-    shadows: f32,
+    solid_below: f32,
     contrast: f32,
     pivot: f32,
     mode: u32,
     shape: u32,
     sheet: u32,
-    spread: f32,
+    ink_bleed: f32,
     sheet_scale: f32,
     sheet_corner: Vec2,
     clip_from_world: Mat4,

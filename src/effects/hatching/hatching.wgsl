@@ -86,7 +86,7 @@ fn strokes_left(simplify_small: f32, neighbours: f32) -> f32 {
 }
 
 #ifdef EFFECT_HATCHING_ON_THINGS
-#ifdef EFFECT_HATCHING_CALM
+#ifdef EFFECT_HATCHING_SIMPLIFY_SMALL
 // Whether the surface at a pixel, in world axes, continues at a neighbour.
 fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
     let corner = view.viewport.xy;
@@ -106,7 +106,7 @@ fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
 }
 
 // How much of the strokes is left at a pixel.
-fn calmed(s: Hatching, p: Pixel, on: Surface) -> f32 {
+fn stroke_part(s: Hatching, p: Pixel, on: Surface) -> f32 {
     let r = i32(clamp(round(s.strokes.spacing), 2.0, 16.0));
     let beside = continues_at(s, p, on, vec2(r, 0)) + continues_at(s, p, on, vec2(-r, 0));
     let above = continues_at(s, p, on, vec2(0, r)) + continues_at(s, p, on, vec2(0, -r));
@@ -183,11 +183,11 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var cover = 0.0;
     var tone = 0.0;
     if is_there {
-        tone = darkness(s.strokes, light) * mix(s.at_near, s.at_far, p.depth.x) * p.prints.x;
+        tone = darkness(s.strokes, light) * mix(s.at_near, s.at_far, p.depth.x) * p.print_factors.x;
 #ifdef EFFECT_HATCHING_ON_THINGS
         cover = marked(s.strokes, anchored(on, vec2<i32>(floor(p.position))), tone);
-#ifdef EFFECT_HATCHING_CALM
-        cover = mix(tone, cover, calmed(s, p, on));
+#ifdef EFFECT_HATCHING_SIMPLIFY_SMALL
+        cover = mix(tone, cover, stroke_part(s, p, on));
 #endif
 #else
         cover = marked(s.strokes, on, tone);

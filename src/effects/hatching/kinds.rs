@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum HatchingAnchor {
-    /// Things: strokes follow their form. They are fixed to the world, and to objects that have an
-    /// [`PatternAnchor`](crate::objects::PatternAnchor). Needs depth and normals; without them, strokes are
-    /// fixed to the page.
+    /// The surfaces of things: strokes follow their shape. They are fixed to the world, or to an
+    /// object that has a [`PatternAnchor`](crate::objects::PatternAnchor). Needs depth and normals;
+    /// without them, strokes are fixed to the page.
     #[default]
     Object,
     /// The page: strokes are parallel, and stand still while things move under them (Lake et al.
@@ -45,16 +45,16 @@ pub enum HatchingGround {
     Paper,
 }
 
-/// What a [`Hatching`](crate::Hatching) is dark by.
+/// What decides how dark a [`Hatching`](crate::Hatching) is.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum HatchingSource {
-    /// The picture: shadows, and dark colours too.
+    /// The lightness of the picture, so dark colours are hatched as well as shadows.
     #[default]
     Picture,
     /// The direction in which a surface faces: lightness 1 towards the
-    /// [`KeyLight`](crate::KeyLight), a half beside it, 0 away from it. Neither colours nor cast
-    /// shadows count. On a page, as [`HatchingSource::Picture`].
+    /// [`KeyLight`](crate::KeyLight), a half beside it, 0 away from it. Colours and cast shadows
+    /// have no effect. With [`HatchingAnchor::Page`], the same as [`HatchingSource::Picture`].
     Facing,
 }

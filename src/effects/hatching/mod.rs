@@ -42,15 +42,15 @@ pub struct Hatching {
     pub marks: HatchingMarks,
     /// What strokes are fixed to. Default: [`HatchingAnchor::Object`].
     pub anchor: HatchingAnchor,
-    /// What hatching is dark by. Default: [`HatchingSource::Picture`].
+    /// What decides how dark the hatching is. Default: [`HatchingSource::Picture`].
     pub source: HatchingSource,
     /// Lightness (0 black, 1 white) up to which hatching is darkest. Range 0 to 0.9, default 0.15.
     #[reflect(@FieldRange::linear(0.0, 0.9))]
-    pub shadows: f32,
-    /// Lightness from which there are no strokes, at least 0.05 more than `shadows`. Range 0.05 to
-    /// 1, default 0.7.
+    pub solid_below: f32,
+    /// Lightness from which there are no strokes, at least 0.05 more than `solid_below`. Range 0.05
+    /// to 1, default 0.7.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
-    pub highlights: f32,
+    pub bare_above: f32,
     /// Exponent of the darkness between the two: above 1, middle tones have fewer strokes. Range
     /// 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
@@ -58,9 +58,9 @@ pub struct Hatching {
     /// Number of tones of the hatching, in equal steps. Range 0 (all tones) to 12, default 0.
     #[reflect(@FieldRange::linear(0.0, 12.0), @BlendField::Switch)]
     pub tones: u32,
-    /// Distance of neighbouring strokes in logical pixels, from this to twice as much: then new
-    /// ones have grown between them. Dots are this far apart at `layer_darkness`; they are
-    /// three quarters of it wide by default. Range 2 to 24, default 4.
+    /// Least distance of neighbouring strokes in logical pixels. It grows to twice this as the
+    /// camera comes nearer, while new strokes grow in between. Dots are this far apart at
+    /// `layer_darkness`; they are three quarters of it wide by default. Range 2 to 24, default 4.
     #[reflect(@FieldRange::logarithmic(2.0, 24.0).unit("px"))]
     pub spacing: f32,
     /// Number of directions of strokes: crossing ones begin where the first has
@@ -77,15 +77,15 @@ pub struct Hatching {
     /// the page. Range -90 to 90, default 0.
     #[reflect(@FieldRange::linear(-90.0, 90.0).unit("°"))]
     pub angle: f32,
-    /// Length of a stroke in logical pixels, on average. Not of dots. Range 10 to 400, default 80.
+    /// Average length of a stroke in logical pixels. Dots ignore it. Range 10 to 400, default 80.
     #[reflect(@FieldRange::logarithmic(10.0, 400.0).unit("px"))]
     pub length: f32,
-    /// How thin strokes become at their ends: 0 (lines without ends) to 1 (gaps). Not of dots.
-    /// Range 0 to 1, default 0.6.
+    /// How thin strokes become at their ends, from 0 (lines without ends) to 1 (gaps between
+    /// strokes). Dots ignore it. Range 0 to 1, default 0.6.
     #[reflect(@FieldRange::FRACTION)]
     pub breaks: f32,
-    /// How far strokes stray from their lines, and dots from their rows, of what they can without
-    /// meeting others. Range 0 to 1, default 0.3.
+    /// How far strokes stray from their lines, and dots from their rows, as a fraction of the
+    /// distance at which they would meet their neighbours. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
     pub wobble: f32,
     /// How much the width of a stroke, or the area of a dot, varies. Range 0 to 1, default 0.3.
@@ -93,11 +93,11 @@ pub struct Hatching {
     pub pressure: f32,
     /// How often `wobble` and `pressure` change, in drawings per second. Strokes stay where they
     /// are. Range 0 (never) to 60, default 0.
-    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/s"))]
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
-    /// How far strokes turn into a plain tone of the same darkness where they would not continue:
-    /// on what is smaller than the distance of two strokes, as grass, leaves and what is far away.
-    /// Reads the depth at four more places. Range 0 to 1, default 0.
+    /// How far strokes turn into a plain tone of the same darkness on details that are narrower
+    /// than the gap between two strokes, such as grass, leaves and distant things. Reads the depth
+    /// at four more places. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub simplify_small: f32,
     /// Colour of the strokes. Default: black. Components are clamped to what a display shows;
@@ -128,8 +128,8 @@ impl Default for Hatching {
             marks: HatchingMarks::Strokes,
             anchor: HatchingAnchor::Object,
             source: HatchingSource::Picture,
-            shadows: 0.15,
-            highlights: 0.7,
+            solid_below: 0.15,
+            bare_above: 0.7,
             gamma: 1.0,
             tones: 0,
             spacing: 4.0,
@@ -202,7 +202,7 @@ impl Effect for Hatching {
         let on_things = self.anchor == HatchingAnchor::Object;
         variants.flag("DOTS", self.marks == HatchingMarks::Dots);
         variants.flag("ON_THINGS", on_things);
-        variants.flag("CALM", on_things && self.simplify_small > 0.0);
+        variants.flag("SIMPLIFY_SMALL", on_things && self.simplify_small > 0.0);
         variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
     }
 
@@ -243,8 +243,8 @@ impl Hatching {
             length: self.length * scale,
             layers: self.layers,
             layer_darkness: self.layer_darkness,
-            shadows: self.shadows,
-            highlights: self.highlights.max(self.shadows + 0.05),
+            solid_below: self.solid_below,
+            bare_above: self.bare_above.max(self.solid_below + 0.05),
             gamma: self.gamma,
             levels: self.tones as f32,
             breaks: self.breaks,

@@ -17,11 +17,11 @@ use crate::{
 /// Draws lines of equal depth, height or distance over all surfaces: the contour lines of a
 /// map, the rings of a sonar (Saito and Takahashi 1990).
 ///
-/// Lines fade out where they are closer than 4 physical pixels, and where they would be more
-/// than 500 pixels apart: a floor at the height of a line is not filled, as far as its depth
-/// is exact: places are known to a few ten-millionths of their distance. They lie on the
-/// geometry of the depth prepass; in multisampled views, on that of the first sample. Under
-/// temporal anti-aliasing they shake by up to half a pixel.
+/// Lines fade out where they are closer than 4 physical pixels, and where they would be more than
+/// 500 pixels apart, so a floor at exactly the height of a line is not filled with ink, within the
+/// precision of depth (a few ten-millionths of the distance). They lie on the geometry of the depth
+/// prepass; in multisampled views, on that of the first sample. Under temporal anti-aliasing they
+/// shake by up to half a pixel.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -39,7 +39,7 @@ pub struct IsoLines {
     /// Width of a line in logical pixels. Range 0.5 to 16, default 1.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
-    /// Every how many lines one is heavier, from that of value 0 on. Range 0 (none) to 20,
+    /// Every so many lines, one is heavier, counted from the line of value 0. Range 0 (none) to 20,
     /// default 5.
     #[reflect(@FieldRange::linear(0.0, 20.0), @BlendField::Switch)]
     pub major: u32,

@@ -42,9 +42,9 @@ pub struct Misregistration {
     /// plate. Range 0 (greys have coloured edges) to 1 (greys are moved as one), default 0.7.
     #[reflect(@FieldRange::FRACTION)]
     pub black_generation: f32,
-    /// How far the plates of cyan, magenta and yellow stray besides, to each side and up or down:
-    /// at random, anew for every page. Black is the plate that the others are laid to. Range 0 to
-    /// 8, default 0.
+    /// Largest additional random offset of the cyan, magenta and yellow plates, per axis, chosen
+    /// anew for every page. The black plate does not drift: the others are aligned to it. Range 0
+    /// to 8, default 0.
     #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
     pub drift: f32,
     /// Pages per second. Range 0 (a new page at a [`CameraCut`](crate::CameraCut) alone) to 60,

@@ -35,13 +35,13 @@ pub struct Paint {
     /// The same at the far end. Range 0 (not painted) to 12, default 4.
     #[reflect(@FieldRange::linear(0.0, 12.0).unit("px"))]
     pub at_far: f32,
-    /// How much more areas of even lightness count: the exponent of their deviation. Range 1
+    /// How strongly areas of even lightness are preferred: the exponent of their deviation. Range 1
     /// (soft, as seen through frosted glass) to 16 (patches with hard borders), default 8.
     #[reflect(@FieldRange::linear(1.0, 16.0))]
     pub sharpness: f32,
-    /// Whether paint keeps to the outline of objects even where their colours are alike:
-    /// areas in the middle of which lies another object count an eighth. Object ids are
-    /// drawn; needs the crate's feature `objects`. Default: `false`.
+    /// Whether paint keeps to the outline of objects even where their colours are alike: an area
+    /// whose middle lies on another object has an eighth of the weight. Object ids are drawn; needs
+    /// the crate's feature `objects`. Default: `false`.
     pub figures: bool,
     /// How much of the paint is seen over the picture. Range 0 (the effect is left out) to 1,
     /// default 1.

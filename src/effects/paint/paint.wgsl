@@ -59,8 +59,8 @@ fn is_eighth(s: Paint) -> bool {
 struct Choice {
     // Sum of their weights times: luminance, red and blue less that, 1.
     sum: vec4<f32>,
-    // The smallest variance; that area has its own share as its weight. Unused if the exponent is
-    // 8: then weights are powers of the variances themselves.
+    // The smallest variance; that area has its own fraction as its weight. Unused if the exponent
+    // is 8: then weights are powers of the variances themselves.
     least: f32,
 }
 
@@ -74,24 +74,24 @@ fn chosen_color(c: Choice) -> vec3<f32> {
     return square(color_of(mean.x, mean.yz));
 }
 
-// Adds an area. `share`: its weight before its variance counts; 0 adds nothing.
-fn chosen(c: Choice, m: Means, share: f32, half_sharpness: f32, eighth: bool) -> Choice {
+// Adds an area. `fraction`: its weight before its variance counts; 0 adds nothing.
+fn chosen(c: Choice, m: Means, fraction: f32, half_sharpness: f32, eighth: bool) -> Choice {
     let found = variance(m) + UNSEEN;
     let area = vec4(m.mean, m.chroma, 1.0);
     if eighth {
         // Light of up to 65504 has variances of up to 16376: the power is above 1e-33.
         let ratio = UNSEEN / found;
         let fourth = ratio * ratio;
-        return Choice(c.sum + share * (fourth * fourth) * area, c.least);
+        return Choice(c.sum + fraction * (fourth * fourth) * area, c.least);
     }
     // Relative to the best area, because powers of the variances themselves may be too small for
     // a number.
     let ratio = pow(min(found, c.least) / max(found, c.least), half_sharpness);
     let better = found < c.least;
     let before = select(1.0, ratio, better);
-    let now = share * select(ratio, 1.0, better);
+    let now = fraction * select(ratio, 1.0, better);
     let next = Choice(before * c.sum + now * area, min(found, c.least));
-    if share > 0.0 {
+    if fraction > 0.0 {
         return next;
     }
     return c;
@@ -103,7 +103,7 @@ fn is_inside(pixel: vec2<i32>) -> bool {
 }
 
 // The factor for an area with its middle in another pixel: less if that shows another object.
-fn figure_share(own: vec2<i32>, other: vec2<i32>) -> f32 {
+fn figure_factor(own: vec2<i32>, other: vec2<i32>) -> f32 {
 #ifdef EFFECT_PAINT_FIGURES
     return select(0.125, 1.0, load_object(own).x == load_object(other).x);
 #else
@@ -113,7 +113,7 @@ fn figure_share(own: vec2<i32>, other: vec2<i32>) -> f32 {
 
 // The factor for a box that is smaller than asked: how much of the pixel it contains, of what it
 // should. One that does not reach the pixel would be even on the other side of an edge.
-fn reaching_share(found: f32, half: f32, at: i32) -> f32 {
+fn reaching_fraction(found: f32, half: f32, at: i32) -> f32 {
     return min(part_of_box(found, at) / max(part_of_box(half, at), 1e-6), 1.0);
 }
 
@@ -123,7 +123,7 @@ struct Ring {
     at: i32,
     // Half the side that they should have.
     half: f32,
-    share: f32,
+    fraction: f32,
     half_sharpness: f32,
     eighth: bool,
 }
@@ -133,9 +133,9 @@ struct Ring {
 fn box_added(c: Choice, r: Ring, direction: vec2<i32>) -> Choice {
     let other = r.pixel + r.at * direction;
     let m = load_means(other);
-    let reaches = reaching_share(m.half, r.half, r.at);
-    let share = r.share * m.coverage * reaches * figure_share(r.pixel, other);
-    return chosen(c, m, select(0.0, share, is_inside(other)), r.half_sharpness, r.eighth);
+    let reaches = reaching_fraction(m.half, r.half, r.at);
+    let fraction = r.fraction * m.coverage * reaches * figure_factor(r.pixel, other);
+    return chosen(c, m, select(0.0, fraction, is_inside(other)), r.half_sharpness, r.eighth);
 }
 
 // Adds the eight boxes of a ring.
@@ -255,12 +255,12 @@ fn sector_paint(s: Paint, position: vec2<f32>, long: vec2<f32>, short: vec2<f32>
         let mean = sums[k] / max(weights[k], 1e-20);
         let direction = sector_direction(k);
         let middle = vec2<i32>(floor(position + 0.5 * (direction.x * long + direction.y * short)));
-        var share = weights[k] / whole[k];
+        var fraction = weights[k] / whole[k];
         if is_inside(middle) {
-            share *= figure_share(vec2<i32>(position), middle);
+            fraction *= figure_factor(vec2<i32>(position), middle);
         }
         let m = Means(mean.x, mean.y, mean.zw, 1.0, 0.0);
-        c = chosen(c, m, share, s.half_sharpness, is_eighth(s));
+        c = chosen(c, m, fraction, s.half_sharpness, is_eighth(s));
     }
     return c;
 }

@@ -15,8 +15,8 @@ use crate::{
     settings::{FieldRange, color_serde, linear_rgb},
 };
 
-/// Prints the picture on paper: its grain shows in what is neither solid ink nor bare, its
-/// surface shades the page, and its colour tints it.
+/// Prints the picture on paper: its grain shows in the tones between bare paper and solid ink, its
+/// relief shades the page, and its colour tints it.
 ///
 /// The sheet is fixed to the render target, so that the views of a split screen are printed
 /// on one sheet, unless [`anchor`](Self::anchor) gives each its own. Grain, shading and
@@ -49,7 +49,7 @@ pub struct Paper {
     /// sketches and of the dots of a [`Halftone`](crate::Halftone) vary within a band of this
     /// width. The mean width of a line stays within 0.05 pixels; a line that is thin for the spread
     /// varies by at most three quarters of its width, so that it never vanishes. Lines of the
-    /// faithful equations, contours and outlines around marked objects stay smooth. Range 0 to 2,
+    /// faithful equations, contours and outlines around highlighted objects stay smooth. Range 0 to 2,
     /// default 0.
     #[reflect(@FieldRange::linear(0.0, 2.0).unit("px"))]
     pub ink_bleed: f32,

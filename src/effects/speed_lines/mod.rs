@@ -18,9 +18,9 @@ use crate::{
 /// over the picture. Around the point, an ellipse with the viewport's aspect ratio stays
 /// clear.
 ///
-/// Lines are drawn with the stroke of a pen: as wide as asked at the border of the picture,
-/// and pointed at their inner end. Places, lengths and widths are random and change with
-/// every drawing. The point is a place of the viewport, or follows the camera's
+/// Each line tapers like a pen stroke: it has its full width at the border of the picture and a
+/// point at its inner end. Places, lengths and widths are random and change with every drawing. The
+/// point is a place of the viewport, or follows the camera's
 /// [`EffectTarget`](crate::effect::EffectTarget). Reads no texture.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ pub struct SpeedLines {
     /// Drawings per second. Range 0 (one drawing for all time) to 60, default 12.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
-    /// Another number draws other lines. Default: 0.
+    /// Seed of the random lines. Default: 0.
     #[reflect(@FieldRange::linear(0.0, 65535.0), @BlendField::Switch)]
     pub seed: u32,
     /// Colour of the lines. Default: black. Components are clamped to what a display shows;

@@ -84,11 +84,11 @@ fn turn_of(d: vec2<f32>) -> f32 {
 }
 
 // Half the width of a line at a distance from the centre: it begins as a point at `inner`.
-// `share`: its random number. `cell`: distance of two lines there; lines are at most wide
+// `random`: its random number. `cell`: distance of two lines there; lines are at most wide
 // enough to reach into the next cell but one.
-fn speed_line_half_width(s: SpeedLines, share: f32, at: f32, inner: f32, cell: f32) -> f32 {
+fn speed_line_half_width(s: SpeedLines, random: f32, at: f32, inner: f32, cell: f32) -> f32 {
     let grown = clamp((at - inner) / max(s.far - inner, 1.0), 0.0, 1.0);
-    let full = s.half_width * (0.2 + 0.8 * share * share);
+    let full = s.half_width * (0.2 + 0.8 * random * random);
     return min(full * grown, max(1.1 * cell - 0.5, 0.0));
 }
 

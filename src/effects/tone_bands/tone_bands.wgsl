@@ -6,7 +6,7 @@
 #import bevy_comics::effect::pixel::Pixel
 
 struct ToneBands {
-    // Number of bands; the faithful equations always has three.
+    // Number of bands; the faithful equations always have three.
     levels: f32,
     // Width of the step between two bands, physical pixels.
     softness: f32,

@@ -14,12 +14,13 @@ use crate::{
     settings::{FieldRange, color_serde, oklab},
 };
 
-/// Paints the picture in three tones by its lightness, near ones and far ones (X-Toon: Barla,
-/// Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras whose scenes do
-/// not have a [`ToonMaterial`](crate::ToonMaterial).
+/// Maps the lightness of the picture to three tones, with one set of tones for near and one for far
+/// (X-Toon: Barla, Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras
+/// whose scenes do not have a [`ToonMaterial`](crate::ToonMaterial).
 ///
-/// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Far tones with
-/// soft edges and pale colours are an aerial perspective; equal far tones are an abstraction.
+/// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Distant tones
+/// with soft edges and pale colours are an aerial perspective; equal distant tones are an
+/// abstraction.
 ///
 /// Bevy's cameras dither by default. On a flat area whose lightness is within 4/255 of a place
 /// where a tone begins, a hard edge turns a code of dither into up to a fifth of the difference of
@@ -51,27 +52,28 @@ pub struct ToneRamp {
     pub softness: f32,
     /// Tone of what is dark, far away. Default: a pale blue.
     #[serde(with = "color_serde")]
-    pub far_dark: Color,
+    pub distant_dark: Color,
     /// Tone between dark and light, far away. Default: a paler blue.
     #[serde(with = "color_serde")]
-    pub far_middle: Color,
+    pub distant_middle: Color,
     /// Tone of what is light, far away. Default: a nearly white blue.
     #[serde(with = "color_serde")]
-    pub far_light: Color,
+    pub distant_light: Color,
     /// Lightness where the middle tone begins, far away. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
-    pub far_middle_at: f32,
+    pub distant_middle_at: f32,
     /// Lightness where the light tone begins, far away. Range 0 to 1, default 0.55.
     #[reflect(@FieldRange::FRACTION)]
-    pub far_light_at: f32,
+    pub distant_light_at: f32,
     /// Width of the edges, far away, in lightness. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
-    pub far_softness: f32,
-    /// Place in the depth map that has the near tones. What is nearer than it has more of the far
-    /// ones, too. Range 0 to 1, default 0, the nearest.
+    pub distant_softness: f32,
+    /// Place in the depth map that has the near tones alone. The distant tones increase on both
+    /// sides of it. Range 0 to 1, default 0, the nearest.
     #[reflect(@FieldRange::FRACTION)]
     pub focus: f32,
-    /// How far from `focus` there are only far tones, in the depth map. Range 0.01 to 1, default 1.
+    /// Distance from `focus`, in the depth map, from which on only the distant tones are left.
+    /// Range 0.01 to 1, default 1.
     #[reflect(@FieldRange::linear(0.01, 1.0))]
     pub reach: f32,
     /// How much of the colours of things is kept: the tones are multiplied by it. Range 0 (the
@@ -93,12 +95,12 @@ impl Default for ToneRamp {
             middle_at: 0.3,
             light_at: 0.55,
             softness: 0.0,
-            far_dark: Color::srgb(0.66, 0.74, 0.86),
-            far_middle: Color::srgb(0.79, 0.85, 0.93),
-            far_light: Color::srgb(0.93, 0.95, 0.98),
-            far_middle_at: 0.3,
-            far_light_at: 0.55,
-            far_softness: 0.3,
+            distant_dark: Color::srgb(0.66, 0.74, 0.86),
+            distant_middle: Color::srgb(0.79, 0.85, 0.93),
+            distant_light: Color::srgb(0.93, 0.95, 0.98),
+            distant_middle_at: 0.3,
+            distant_light_at: 0.55,
+            distant_softness: 0.3,
             focus: 0.0,
             reach: 1.0,
             keep_color: 1.0,
@@ -128,13 +130,13 @@ impl Effect for ToneRamp {
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::LIGHTNESS_CHANGE;
-        needs.set(Needs::MAP, self != &self.near_alone());
+        needs.set(Needs::MAP, self != &self.without_distance());
         needs
     }
 
     fn without(self, missing: Needs) -> Option<Self> {
         let left = if missing.contains(Needs::MAP) {
-            self.near_alone()
+            self.without_distance()
         } else {
             self
         };
@@ -149,12 +151,12 @@ impl Effect for ToneRamp {
             light_at: self.light_at,
             light: oklab(self.light),
             softness: self.softness,
-            far_dark: oklab(self.far_dark),
-            far_middle_at: self.far_middle_at,
-            far_middle: oklab(self.far_middle),
-            far_light_at: self.far_light_at,
-            far_light: oklab(self.far_light),
-            far_softness: self.far_softness,
+            distant_dark: oklab(self.distant_dark),
+            distant_middle_at: self.distant_middle_at,
+            distant_middle: oklab(self.distant_middle),
+            distant_light_at: self.distant_light_at,
+            distant_light: oklab(self.distant_light),
+            distant_softness: self.distant_softness,
             focus: self.focus,
             reach: self.reach,
             keep_color: self.keep_color,
@@ -164,15 +166,15 @@ impl Effect for ToneRamp {
 }
 
 impl ToneRamp {
-    /// The same with the near tones everywhere.
-    fn near_alone(&self) -> Self {
+    /// The same with the near tones at every distance.
+    fn without_distance(&self) -> Self {
         Self {
-            far_dark: self.dark,
-            far_middle: self.middle,
-            far_light: self.light,
-            far_middle_at: self.middle_at,
-            far_light_at: self.light_at,
-            far_softness: self.softness,
+            distant_dark: self.dark,
+            distant_middle: self.middle,
+            distant_light: self.light,
+            distant_middle_at: self.middle_at,
+            distant_light_at: self.light_at,
+            distant_softness: self.softness,
             ..*self
         }
     }
@@ -187,12 +189,12 @@ pub struct ToneRampUniform {
     light_at: f32,
     light: Vec3,
     softness: f32,
-    far_dark: Vec3,
-    far_middle_at: f32,
-    far_middle: Vec3,
-    far_light_at: f32,
-    far_light: Vec3,
-    far_softness: f32,
+    distant_dark: Vec3,
+    distant_middle_at: f32,
+    distant_middle: Vec3,
+    distant_light_at: f32,
+    distant_light: Vec3,
+    distant_softness: f32,
     focus: f32,
     reach: f32,
     keep_color: f32,

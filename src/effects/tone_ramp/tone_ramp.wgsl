@@ -7,19 +7,19 @@
 #import bevy_comics::effect::pixel::Pixel
 
 struct ToneRamp {
-    // OKLab: near, and far.
+    // OKLab: near, and far away.
     dark: vec3<f32>,
     middle_at: f32,
     middle: vec3<f32>,
     light_at: f32,
     light: vec3<f32>,
     softness: f32,
-    far_dark: vec3<f32>,
-    far_middle_at: f32,
-    far_middle: vec3<f32>,
-    far_light_at: f32,
-    far_light: vec3<f32>,
-    far_softness: f32,
+    distant_dark: vec3<f32>,
+    distant_middle_at: f32,
+    distant_middle: vec3<f32>,
+    distant_light_at: f32,
+    distant_light: vec3<f32>,
+    distant_softness: f32,
     // Place in the depth map with all detail, and how far from it there is none.
     focus: f32,
     reach: f32,
@@ -35,8 +35,8 @@ fn tone_detail(s: ToneRamp, depth: vec2<f32>) -> f32 {
     return 1.0 - clamp(away / s.reach, 0.0, 1.0);
 }
 
-fn mixed_tone(near: vec3<f32>, far: vec3<f32>, detail: f32) -> vec3<f32> {
-    return max(oklab_to_linear(mix(far, near, detail)), vec3(0.0));
+fn mixed_tone(near: vec3<f32>, distant: vec3<f32>, detail: f32) -> vec3<f32> {
+    return max(oklab_to_linear(mix(distant, near, detail)), vec3(0.0));
 }
 
 fn tone_edge(at: f32, y: f32, width: f32) -> f32 {
@@ -46,15 +46,15 @@ fn tone_edge(at: f32, y: f32, width: f32) -> f32 {
 // The tone of a lightness `y`, which changes by `change` over a pixel.
 fn ramp_tone(s: ToneRamp, y: f32, change: f32, detail: f32) -> vec3<f32> {
     // At least eight display codes, so that the dither of a flat area does not speckle.
-    let width = max(mix(s.far_softness, s.softness, detail), max(change, 8.0 / 255.0));
-    let middle = tone_edge(mix(s.far_middle_at, s.middle_at, detail), y, width);
-    let light = tone_edge(mix(s.far_light_at, s.light_at, detail), y, width);
+    let width = max(mix(s.distant_softness, s.softness, detail), max(change, 8.0 / 255.0));
+    let middle = tone_edge(mix(s.distant_middle_at, s.middle_at, detail), y, width);
+    let light = tone_edge(mix(s.distant_light_at, s.light_at, detail), y, width);
     let below = mix(
-        mixed_tone(s.dark, s.far_dark, detail),
-        mixed_tone(s.middle, s.far_middle, detail),
+        mixed_tone(s.dark, s.distant_dark, detail),
+        mixed_tone(s.middle, s.distant_middle, detail),
         middle,
     );
-    return mix(below, mixed_tone(s.light, s.far_light, detail), light);
+    return mix(below, mixed_tone(s.light, s.distant_light, detail), light);
 }
 
 // The picture in tones. Some of the colour of things is kept: that of their brightest light.

@@ -22,8 +22,8 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TwoTone {
-    /// Lightness that divides the tones: the square root of the luminance (Hunter 1948).
-    /// Range 0 to 1, default 0.45: not half, which is the middle tone of three
+    /// Lightness that divides the tones: the square root of the luminance (Hunter 1948). Range 0 to
+    /// 1, default 0.45, which differs from the middle tone (0.5) of three
     /// [`ToneBands`](crate::ToneBands).
     #[reflect(@FieldRange::FRACTION)]
     pub threshold: f32,

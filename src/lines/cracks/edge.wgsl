@@ -92,11 +92,11 @@ struct Grid {
     // Cracks that a line continues along weak edges.
     steps: i32,
     // Pieces of line of fewer cracks are left out.
-    specks: i32,
+    min_length: i32,
     // Gaps of at most this many cracks are closed.
-    bridge: i32,
+    gap_closing: i32,
     // Frames that lines stay where their edges have become weak.
-    persistence: i32,
+    hold_frames: i32,
     // Size of the grid of the last frame, if lines stay.
     past_size: vec2<i32>,
     // Pixels by which loose ends are extended.

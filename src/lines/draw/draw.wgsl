@@ -17,7 +17,7 @@
 #import bevy_comics::lines::gaps::source_of
 #endif
 #import bevy_comics::lines::pass::line_pass
-#ifdef SPREAD
+#ifdef INK_BLEED
 #import bevy_comics::lines::sheet::{height_under, spread_width}
 #endif
 #ifdef STREAKS
@@ -79,14 +79,14 @@ struct Ink {
 // Pixels of the viewport per pixel of the grid.
 var<private> viewport_scale: vec2<f32>;
 
-#ifdef SPREAD
+#ifdef INK_BLEED
 // Height of the sheet under the pixel.
 var<private> height: f32;
 #endif
 
 // The half width of a line at the pixel.
 fn width_here(half_width: f32) -> f32 {
-#ifdef SPREAD
+#ifdef INK_BLEED
     return spread_width(line_pass.sheet, half_width, height);
 #else
     return half_width;
@@ -405,7 +405,7 @@ fn inward_of(ink: Ink) -> vec2<i32> {
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     set_view(line_pass.seen);
-#ifdef SPREAD
+#ifdef INK_BLEED
     height = height_under(line_pass.sheet, position.xy);
 #endif
     let g = line_pass.grid;

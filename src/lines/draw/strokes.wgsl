@@ -9,7 +9,7 @@
 #ifdef TAPER_WEIGHT
 #import bevy_comics::lines::overshoot::stroke_width
 #endif
-#ifdef SPREAD
+#ifdef INK_BLEED
 #import bevy_comics::lines::sheet::{height_under, spread_width}
 #endif
 #ifdef STREAKS
@@ -86,7 +86,7 @@ fn stroke(at: Corner) -> Drawn {
 #ifdef STREAKS
     kinds *= dry_ink(line_pass.sheet, at.position.xy, b - a, half_width);
 #endif
-#ifdef SPREAD
+#ifdef INK_BLEED
     half_width = spread_width(line_pass.sheet, half_width, height_under(line_pass.sheet, at.position.xy));
 #endif
     kinds *= segment_coverage(place, a, b, half_width);

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::lines::hidden
 
-// Which pixels of marked objects are hidden in the picture: the only module that declares
+// Which pixels of highlighted objects are hidden in the picture: the only module that declares
 // binding 27.
 
 #import bevy_comics::depth::raw::raw_depth
@@ -9,7 +9,7 @@
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::objects::texel_object
 
-// Depth of the picture; that of the view is that of the marked objects.
+// Depth of the picture; that of the view is that of the highlighted objects.
 #ifdef MULTISAMPLED_PICTURE
 @group(0) @binding(27) var picture_depth: texture_multisampled_2d<f32>;
 #else

@@ -74,7 +74,7 @@ fn list_cell(cell: vec2<u32>) {
 // These rows of a block, and those in which bridge.wgsl may add cracks.
 fn with_gaps(rows: u32) -> u32 {
     var all = rows;
-    for (var i = 1; i <= line_pass.grid.bridge; i++) {
+    for (var i = 1; i <= line_pass.grid.gap_closing; i++) {
         all |= (all << 1u) | (all >> 1u);
     }
     return all;

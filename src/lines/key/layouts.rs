@@ -182,7 +182,7 @@ fn in_cells<const READ: usize, const WRITTEN: usize>(
     layout(label, ShaderStages::COMPUTE, entries)
 }
 
-/// The layout entry of the depth that hides marked objects.
+/// The layout entry of the depth that hides highlighted objects.
 fn picture_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEntry {
     let unfilterable = TextureSampleType::Float { filterable: false };
     let texture = if multisampled {

@@ -36,7 +36,7 @@ bitflags! {
         const OBJECT_EDGES = 1 << 11;
         /// Borders of sections are creases.
         const SECTIONS = 1 << 12;
-        /// The lines are those of marked objects; and whether the depth that hides them is
+        /// The lines are those of highlighted objects; and whether the depth that hides them is
         /// multisampled.
         const MARKS = 1 << 13;
         const MULTISAMPLED_PICTURE = 1 << 14;
@@ -98,7 +98,7 @@ bitflags! {
         /// Creases are fainter where lines are simpler.
         const SIMPLIFIED_CREASES = 1 << 47;
         /// Whole objects are in a layer or simpler.
-        const WEIGHS_BY_OBJECTS = 1 << 48;
+        const WIDTH_BY_OBJECTS = 1 << 48;
         /// The width changes along a line.
         const VARIED = 1 << 49;
 
@@ -116,7 +116,7 @@ bitflags! {
         /// Lines are displaced.
         const BOIL = 1 << 56;
         /// Of the sheet that lines are drawn on: edges are rough; wide lines have streaks.
-        const SPREAD = 1 << 57;
+        const INK_BLEED = 1 << 57;
         const STREAKS = 1 << 58;
         /// Lines ink whole pixels.
         const HARD = 1 << 59;
@@ -177,7 +177,7 @@ impl LineKey {
         .union(Self::LIT_EDGES)
         .union(Self::DEPTH_BORDERS)
         .union(Self::MIDDLE_DEPTH)
-        .union(Self::WEIGHS_BY_OBJECTS)
+        .union(Self::WIDTH_BY_OBJECTS)
         .union(Self::FINDS_BY_OBJECTS)
         .union(Self::COMPLETED)
         .union(Self::PERSISTS)
@@ -237,7 +237,7 @@ impl LineKey {
             (request.needs_owners() && multisampled, Self::INWARD),
             (lines.boil.moves(), Self::BOIL),
             (lines.edge == LineEdge::Hard, Self::HARD),
-            (request.sheet.ink_bleed > 0.0, Self::SPREAD),
+            (request.sheet.ink_bleed > 0.0, Self::INK_BLEED),
             (request.sheet.dry_brush > 0.0, Self::STREAKS),
         ];
         let flags = flags.into_iter().chain(Self::weights(request));
@@ -284,7 +284,7 @@ impl LineKey {
             (lines.has_edge_styles(), Self::EDGE_STYLES),
             (lines.has_lit_edges(), Self::LIT_EDGES),
             (fainter, Self::SIMPLIFIED_CREASES),
-            (request.weighs_by_objects(), Self::WEIGHS_BY_OBJECTS),
+            (request.needs_objects(), Self::WIDTH_BY_OBJECTS),
         ]
         .into_iter()
     }
@@ -345,7 +345,7 @@ impl LineKey {
         let lines = Self::LEDGES | Self::RIMS | Self::BRIDGED | Self::SMOOTH | Self::FOLDS;
         let on_map = Self::PERSPECTIVE_WEIGHT | Self::IN_LAYERS | Self::SIMPLIFIED_CREASES;
         let reads = Self::DEPTH | Self::EDITS | self & Self::OBLIQUE;
-        let by_objects = Self::OUTER_WEIGHT | Self::WEIGHS_BY_OBJECTS;
+        let by_objects = Self::OUTER_WEIGHT | Self::WIDTH_BY_OBJECTS;
         let of_view = Self::DEPTH_BORDERS | Self::MIDDLE_DEPTH;
         self & (lines | Self::WEIGHT | Self::WEIGHTS | Self::LIT_EDGES | of_view)
             | self.when(Self::FOLDS | Self::RIMS | Self::WEIGHT, reads)
@@ -353,7 +353,7 @@ impl LineKey {
             | self.when(Self::LIT_EDGES, self & Self::HARD)
             | self.when(Self::LIGHT_WEIGHT | Self::WIDTH_MAP, Self::SURFACE_WEIGHT)
             | self.when(by_objects, self & Self::OBJECT_IDS)
-            | self.when(Self::WEIGHS_BY_OBJECTS, Self::OBJECT_DEPTHS)
+            | self.when(Self::WIDTH_BY_OBJECTS, Self::OBJECT_DEPTHS)
             | self.when(on_map, self & Self::VISIBLE_RANGE)
     }
 
@@ -375,7 +375,7 @@ impl LineKey {
 
     /// What drawing and strokes have of the colours of lines and their sheet.
     fn for_ink(self) -> Self {
-        let ink = Self::BOIL | Self::SPREAD | Self::STREAKS | Self::SURFACE | Self::INWARD;
+        let ink = Self::BOIL | Self::INK_BLEED | Self::STREAKS | Self::SURFACE | Self::INWARD;
         self & (ink | Self::EDGE_STYLES | Self::OBJECT_STYLES)
             | self.when(Self::OBJECT_STYLES, Self::OBJECT_IDS)
     }

@@ -1,5 +1,5 @@
-// Closes gaps in lines: where at most Grid::bridge cracks in a row are missing between two cracks
-// of lines, the missing ones become parts of lines too. They are like the nearest found crack
+// Closes gaps in lines: where at most Grid::gap_closing cracks in a row are missing between two
+// cracks of lines, the missing ones become parts of lines too. They are like the nearest found crack
 // of their run. Reads the planes of one buffer and adds to those of the other, which begin as a
 // copy.
 //
@@ -64,8 +64,8 @@ fn bridge(
         let down = vec3(e >> 1u, e >> 2u, e >> 3u);
         let before = vec3(south[i - 1], south[i - 2], south[i - 3]);
         let after = vec3(south[i + 1], south[i + 2], south[i + 3]);
-        let east_gaps = gaps_between(up, down, g.bridge) & ~e;
-        let south_gaps = gaps_between(before, after, g.bridge) & ~south[i];
+        let east_gaps = gaps_between(up, down, g.gap_closing) & ~e;
+        let south_gaps = gaps_between(before, after, g.gap_closing) & ~south[i];
         let gaps = (vec2(east_gaps, south_gaps) >> vec2(u32(ROWS_ABOVE))) & vec2(0xffu);
         if gaps.x != 0u {
             store_column(g, first, 0, gaps.x);

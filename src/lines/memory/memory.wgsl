@@ -5,7 +5,7 @@
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Memory {
     // Fraction of this frame where lines move; 1: there is no memory.
-    share: f32,
+    blend_factor: f32,
     // Pixels of the grid between the depths that are compared.
     spacing: i32,
     // Frames for which tiles are drawn that have no cracks any more; 0: there is no memory.
@@ -63,8 +63,8 @@ fn unpack_counts(packed: f32) -> vec3<f32> {
 
 // The number of frames in the memory, this one included, from that of the last frame. Where
 // lines move, there are fewer.
-fn frames_at(before: f32, share: f32, speed: f32) -> f32 {
-    return min(before + 1.0, select(LONGEST, 1.0 / share, speed > STILL));
+fn frames_at(before: f32, blend_factor: f32, speed: f32) -> f32 {
+    return min(before + 1.0, select(LONGEST, 1.0 / blend_factor, speed > STILL));
 }
 
 // The fraction of this frame where lines move by `speed` pixels per frame.
@@ -86,6 +86,6 @@ fn cubic_weights(f: f32) -> vec4<f32> {
 
 // Ink of three kinds from that in the memory and that of this frame. The memory is limited to
 // `least` and `most`.
-fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, share: f32) -> vec3<f32> {
-    return mix(clamp(past, least, most), now, share);
+fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, blend_factor: f32) -> vec3<f32> {
+    return mix(clamp(past, least, most), now, blend_factor);
 }

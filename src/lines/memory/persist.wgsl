@@ -1,5 +1,5 @@
 // Keeps lines where the last frames had them: a found crack that no line has reached becomes a
-// part of one if it was one at most Grid::persistence frames ago (hysteresis in time), or if one a
+// part of one if it was one at most Grid::hold_frames frames ago (hysteresis in time), or if one a
 // pixel further across was, which has gone. Cracks that are kept do not continue lines, so that
 // lines do not creep along weak edges. In a still view there is nothing to keep. The grid of the last
 // frame may have another size.
@@ -84,7 +84,7 @@ fn persist_column(g: Grid, first: vec2<i32>, side: i32, rows: ptr<function, arra
         if !is_line {
             past = life_around(g, crack);
         }
-        let life = next_life(is_line, past, u32(g.persistence));
+        let life = next_life(is_line, past, u32(g.hold_frames));
         (*rows)[row] |= life << life_shift(crack);
         if past > 0u {
             kept |= 1u << row;

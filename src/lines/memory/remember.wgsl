@@ -126,12 +126,12 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let past_wide = past_nearest(from_pixel);
     let covered = is_in_front(around.nearest, past_wide, jump_at(around.nearest));
     let vanished = is_in_front(past_wide, around.wide, jump_at(past_wide));
-    let exists = seen && line_pass.memory.share < 1.0;
+    let exists = seen && line_pass.memory.blend_factor < 1.0;
     var counted = select(vec3(0.0), unpack_counts(before.y), exists);
     let unsteady = unsteady_at(counted.z, covered || uncovered || vanished, speed);
     let steady = is_steady(unsteady);
     counted = select(counted, vec3(0.0), uncovered && steady);
-    let frames = frames_at(counted.x, line_pass.memory.share, speed);
+    let frames = frames_at(counted.x, line_pass.memory.blend_factor, speed);
     let past = past_at(place);
     let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
     let missing = missing_at(counted.y, outside);

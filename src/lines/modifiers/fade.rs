@@ -4,8 +4,8 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 
 /// Lines become thinner and fainter the farther their surface is from a distance.
 ///
-/// Distances are along the view's axis. In perspective, what counts is the ratio of two of them;
-/// in an orthographic view their difference, as a fraction of
+/// Distances are along the view's axis. In perspective they are compared by their ratio, in an
+/// orthographic view by their difference, as a fraction of
 /// [`EffectContext::depth_reference`](crate::effect::EffectContext::depth_reference).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFade {

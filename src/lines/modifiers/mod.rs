@@ -18,8 +18,8 @@ pub(crate) use simplification::LineSimplificationUniform;
 /// What an effect changes about the lines of its camera
 /// ([`Effect::line_modifiers`](crate::Effect::line_modifiers)).
 ///
-/// Faithful lines are not changed. Without compute shaders, `fade`, `layers` and the opacity of
-/// creases are not, and lines are simplified by their own place, not by that of their object.
+/// Faithful lines do not change. Without compute shaders, `fade`, `layers` and the opacity of
+/// creases have no effect, and lines are simplified by their own depth instead of their object's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineModifiers {
     /// The distance at which lines are whole; farther from it they fade. Default: none.

@@ -38,7 +38,7 @@ use crate::{
 #[cfg(feature = "objects")]
 use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
 
-/// Records the passes that find the lines of the marked objects of the view, and draw their
+/// Records the passes that find the lines of the highlighted objects of the view, and draw their
 /// ink.
 #[cfg(feature = "objects")]
 pub(crate) fn find_marks(
@@ -72,7 +72,7 @@ pub(crate) fn find_marks(
         Ok(()) => lines.found.store(true, Ordering::Relaxed),
         Err(reason) => {
             let outcome = StageOutcome::Skipped(reason);
-            ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
+            ledger.set(request.camera, ComicsStage::HighlightedObjects, outcome);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Draws the lines of marked objects over the picture: see `marks.wgsl`.
+//! Draws the lines of highlighted objects over the picture: see `marks.wgsl`.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -134,7 +134,7 @@ fn bindings<'a>(
     Some(resources.map(|(binding, resource)| entry(binding, resource)))
 }
 
-/// Draws the lines of the marked objects of the view over its picture. `LATE`: of the views
+/// Draws the lines of the highlighted objects of the view over its picture. `LATE`: of the views
 /// that are styled after anti-aliasing, of the others otherwise.
 pub(crate) fn draw_marks<const LATE: bool>(
     view: ViewQuery<(&ViewTarget, &ViewMarks)>,

@@ -1,4 +1,4 @@
-// Draws the lines of marked objects over the picture.
+// Draws the lines of highlighted objects over the picture.
 
 #import bevy_comics::effect::color::{linear_to_oklab, srgb_encode}
 #import bevy_comics::lines::edge::decode_ink

@@ -27,7 +27,7 @@ pub(super) struct Sources<'a> {
     pub motion: Option<&'a TextureView>,
     /// Places of objects in the depth map.
     pub places: Option<&'a Buffer>,
-    /// Depth of the picture, which hides marked objects.
+    /// Depth of the picture, which hides highlighted objects.
     pub picture: Option<&'a TextureView>,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Sources<'a> {
         Self { places, ..self }
     }
 
-    /// Those of marked objects.
+    /// Those of highlighted objects.
     #[cfg(feature = "objects")]
     pub fn layer(self, layer: &'a ViewLayer) -> Self {
         Self {

@@ -16,9 +16,9 @@ pub(crate) struct Grid {
     pub jump_radius: f32,
     pub words: IVec2,
     pub steps: i32,
-    pub specks: i32,
-    pub bridge: i32,
-    pub persistence: i32,
+    pub min_length: i32,
+    pub gap_closing: i32,
+    pub hold_frames: i32,
     pub past_size: IVec2,
     pub overshoot: f32,
 }

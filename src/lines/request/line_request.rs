@@ -78,7 +78,7 @@ pub(crate) struct LineRequest {
     /// Cracks that a line continues along weak edges.
     pub steps: i32,
     /// Borders of pixels that a piece of line must have.
-    pub specks: i32,
+    pub min_length: i32,
     /// Pixels of the grid by which loose ends are extended.
     pub extension: f32,
     pub oblique: bool,
@@ -88,7 +88,7 @@ pub(crate) struct LineRequest {
     pub ids: bool,
     /// Meshes are divided into sections, or may be later.
     pub sections: bool,
-    /// The lines are those of marked objects.
+    /// The lines are those of highlighted objects.
     pub marks: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
@@ -115,7 +115,7 @@ impl LineRequest {
     }
 
     /// Whether the width and opacity of lines depend on the places of objects in the depth map.
-    pub fn weighs_by_objects(&self) -> bool {
+    pub fn needs_objects(&self) -> bool {
         let layers = self.layers.is_some_and(|layers| layers.by_objects);
         self.ids && (layers || self.simplification.is_some_and(|s| s.by_objects))
     }
@@ -190,9 +190,9 @@ impl LineRequest {
             jump_radius: jumps.radius.ceil(),
             words: words(self.rect).as_ivec2(),
             steps: self.steps,
-            specks: self.specks,
-            bridge: self.settings.gap_closing as i32,
-            persistence: self.settings.hold_frames as i32,
+            min_length: self.min_length,
+            gap_closing: self.settings.gap_closing as i32,
+            hold_frames: self.settings.hold_frames as i32,
             past_size: past_size.as_ivec2(),
             overshoot: self.extension,
         }

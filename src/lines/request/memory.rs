@@ -8,7 +8,7 @@ const MISSING: u32 = 16;
 /// `Memory` of `memory.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MemoryUniform {
-    share: f32,
+    blend_factor: f32,
     spacing: i32,
     tile_frames: u32,
     unused: u32,
@@ -18,7 +18,7 @@ pub(crate) struct MemoryUniform {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MemoryRequest {
     /// Fraction of each frame where lines move.
-    pub share: f32,
+    pub blend_factor: f32,
     /// Number of camera cuts so far.
     pub cuts: u32,
 }
@@ -28,7 +28,7 @@ impl MemoryRequest {
     /// drawn around their owners.
     pub fn uniform(&self, reach: i32, is_new: bool) -> MemoryUniform {
         MemoryUniform {
-            share: if is_new { 1.0 } else { self.share },
+            blend_factor: if is_new { 1.0 } else { self.blend_factor },
             spacing: (reach / 2).max(1),
             tile_frames: MISSING + 1,
             unused: 0,

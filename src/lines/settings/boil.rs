@@ -15,17 +15,17 @@ use crate::{
 /// Displaces lines by noise that changes several times a second, as if each drawing of an
 /// animated film had been inked anew ("boiling" lines).
 ///
-/// The noise is a function of the picture, so lines crawl through it while the camera moves.
-/// Between two drawings it stands still. Faithful lines do not boil. Narrow
-/// lines cost about twice as much when they boil.
+/// The noise is fixed to the picture, so lines slide through it while the camera moves. Between two
+/// drawings it stands still. Faithful lines do not boil. Narrow lines cost about twice as much when
+/// they boil.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LineBoil {
     /// Largest displacement per axis in logical pixels. Wide dark lines that jump far flicker,
-    /// which can harm viewers who are sensitive to it: times the width of the widest line it is
-    /// at most 8 square pixels, so that a line of 4 pixels moves by up to 2, and one of 16 by
-    /// up to 0.5. Range 0 (off) to 3, default 0.
+    /// which can harm sensitive viewers. So the displacement times the width of the widest line is
+    /// limited to 8 square pixels: a line of 4 pixels moves by up to 2, one of 16 by up to 0.5.
+    /// Range 0 (off) to 3, default 0.
     #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
     pub amplitude: f32,
     /// Length of the waves of a line in logical pixels. Range 20 to 120, default 60.

@@ -12,16 +12,16 @@ use crate::settings::{
     Blend, FieldRange, blend_color, clamp_fields, clamp_or_default, color_serde, linear_rgb,
 };
 
-/// How the creases of one sign are drawn: [`Creases::convex`] or [`Creases::concave`]. The default is
-/// a highlight: the surface, lighter.
+/// How convex or concave creases are drawn: [`Creases::convex`] or [`Creases::concave`]. The
+/// default is a highlight: the colour of the surface, lightened.
 ///
-/// An edge is convex where the surface bends away from the camera, as at the edges of a box, and where
-/// a part stands in front of another one. It is concave where the surface bends towards the camera, as
-/// in the corners of a room; lines in flat surfaces count as concave. The sign is found in the depths
-/// of two pixels on either side, so it is right where both faces are at least 2 pixels wide. Needs
-/// compute shaders: other devices draw all creases alike, and so do the faithful equations. Where a
-/// crease is also an edge between two objects, it has no sign: it is drawn as an object edge, or like the
-/// other creases.
+/// An edge is convex where the surface bends away from the camera, as at the edges of a box, and
+/// where a part stands in front of another one. It is concave where the surface bends towards the
+/// camera, as in the corners of a room; lines in flat surfaces count as concave. Which of the two
+/// an edge is follows from the depths of two pixels on either side, so both faces must be at least
+/// 2 pixels wide. Needs compute shaders: other devices draw all creases alike, and so do the
+/// faithful equations. A crease that is also an edge between two objects is neither convex nor
+/// concave: it is drawn as an object edge, or like the other creases.
 ///
 /// [`Creases::convex`]: crate::lines::Creases::convex
 /// [`Creases::concave`]: crate::lines::Creases::concave

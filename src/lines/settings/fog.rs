@@ -21,9 +21,9 @@ pub enum LineFog {
     /// Nothing: lines are as strong in the fog as elsewhere.
     Ignore,
     /// They fade by the engine's `DistanceFog` in front of the surface that they belong to, if the
-    /// camera has it. Lines of the faithful forms do not. Needs compute shaders, and the crate's
-    /// feature `objects` or `toon`. Other fog is not known, nor are materials without fog
-    /// (`fog_enabled: false`).
+    /// camera has it. Lines of the faithful equations do not. Needs compute shaders, and the
+    /// crate's feature `objects` or `toon`. Other kinds of fog are ignored, and so is
+    /// `fog_enabled: false` of materials.
     #[default]
     Fade,
     /// They fade with distance, whatever fog there is: for `Atmosphere`, volumetric fog and fog of

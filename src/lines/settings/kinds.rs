@@ -73,7 +73,7 @@ impl Silhouettes {
         clamp_fields(self)
     }
 
-    /// `k` of Eq. 2. The corrected form halves the threshold, because a straight edge
+    /// `k` of Eq. 2. The corrected equations halve the threshold, because a straight edge
     /// of height h has `g_max - g_min = h / 2`.
     pub(crate) fn k(&self) -> f32 {
         match self.equations {
@@ -102,7 +102,7 @@ pub struct Creases {
     /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub equations: Equations,
-    /// What creases are found by. Default: [`CreaseSource::Both`].
+    /// Where creases are found. Default: [`CreaseSource::Both`].
     pub source: CreaseSource,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
@@ -142,13 +142,14 @@ pub struct Creases {
 ///
 /// The edges of meshes are exact: lines along faces that are thinner than a pixel, such as those of
 /// window frames, have no gaps. For them every mesh is divided once, in a background task (see
-/// [`MeshTasks`](crate::objects::MeshTasks)), where two triangles bend by 50 degrees and the normals
-/// of their common vertices differ by 15 degrees. Such an edge is a crease where the pixels confirm it:
-/// they bend by 10 degrees, or their depths have a step. Left out are meshes that are skinned,
-/// morphed, transparent or alpha-masked, have more than a million triangles, are mostly small parts,
-/// such as grass, or change again and again. [`MeshSections`](crate::objects::MeshSections) divides
-/// single meshes without these rules, and `MeshSections::NONE` leaves them out; a mesh with
-/// `ATTRIBUTE_MESH_SECTION` has the sections of its author.
+/// [`MeshTasks`](crate::objects::MeshTasks)), where two triangles bend by 50 degrees and the
+/// normals of their common vertices differ by 15 degrees. Such an edge is a crease only where the
+/// picture confirms it: where the surface bends by 10 degrees, or has a step in depth. Left out are
+/// meshes that are skinned, morphed, transparent or alpha-masked, have more than a million
+/// triangles, are mostly small parts, such as grass, or change again and again.
+/// [`MeshSections`](crate::objects::MeshSections) divides single meshes without these rules, and
+/// `MeshSections::NONE` leaves them out; a mesh with `ATTRIBUTE_MESH_SECTION` has the sections of
+/// its author.
 ///
 /// Meshes are divided on devices with `PRIMITIVE_INDEX`, which browsers do not have; on the others
 /// every source is [`Normals`](Self::Normals). Faithful creases are found in normals only.
@@ -278,10 +279,10 @@ pub enum LineEdge {
     /// Those that it covers, each by the part that it covers.
     #[default]
     Smooth,
-    /// Whole pixels, as in pixel art: those next to an edge, on the side of the surface that hides
-    /// the other one, and as many more inwards as the line is wide, in whole physical pixels of at
-    /// least 1. Where no surface hides the other one, lines run on one side all along. Such lines
-    /// are not smooth, do not overshoot, and look as they should with `Msaa::Off`.
+    /// Whole pixels, as in pixel art: rows of pixels along an edge, on the side of the surface in
+    /// front, as many as the line is wide in whole physical pixels, at least 1. Where neither
+    /// surface is in front, a line stays on one side all along. Such lines ignore `smooth` and
+    /// `overshoot`, and are meant for `Msaa::Off`.
     Hard,
 }
 

@@ -67,23 +67,22 @@ pub struct Outlines {
     /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
     pub hysteresis_ratio: f32,
-    /// Leaves out pieces of line of fewer borders of pixels than this, at scale factor 1:
-    /// noise. Closed lines and pieces that meet others stay, however short they are. Range 1
+    /// Removes lines that are shorter than this many pixels at scale factor 1, which are noise.
+    /// Closed lines, and pieces that meet other lines, stay, however short they are. Range 1
     /// (leaves out nothing) to 8, default 7.
     #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub min_length: u32,
-    /// Closes gaps in lines, where nothing responds between two parts of a row or column of
-    /// borders of pixels: up to this many physical pixels, as along wires that are thinner than a
-    /// pixel. Real gaps are closed too. Needs compute shaders. Range 0 (closes none) to 3,
-    /// default 0. Morphological closing along the line.
-    #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
+    /// Closes gaps in lines of up to this many physical pixels along a row or column, such as those
+    /// along wires that are thinner than a pixel. Real gaps are closed too. Needs compute shaders.
+    /// Range 0 (closes none) to 3, default 0. Morphological closing along the line.
+    #[reflect(@FieldRange::linear(0.0, 3.0).unit("physical px"))]
     pub gap_closing: u32,
-    /// For how many frames a line stays where its edge has become weak: one that responds below
-    /// `edge_limit`, but not below `hysteresis_ratio`, has a line if there was one at most a pixel
-    /// away in the last frame (hysteresis in time). So lines flicker less in motion. What moves
-    /// by more than a pixel per frame is followed where the engine draws motion vectors, in views
-    /// with one sample. Lines are forgotten at a `CameraCut`. Needs `hysteresis` and compute
-    /// shaders. Range 0 (off) to 8, default 0.
+    /// How many frames a line stays after its edge has become weak (hysteresis in time), so that
+    /// lines flicker less in motion: an edge that responds below `edge_limit`, but not below
+    /// `hysteresis_ratio`, keeps its line if there was one at most a pixel away in the last frame.
+    /// Faster motion is followed where the engine draws motion vectors, in views with one sample.
+    /// Lines are forgotten at a `CameraCut`. Needs `hysteresis` and compute shaders. Range 0 (off)
+    /// to 8, default 0.
     #[reflect(@FieldRange::linear(0.0, 8.0))]
     pub hold_frames: u32,
     /// What a line loses where an edge is weak. Default: [`LineResponse::Width`].
@@ -93,21 +92,20 @@ pub struct Outlines {
     pub smooth: bool,
     /// Which pixels a line inks. Default: [`LineEdge::Smooth`].
     pub edge: LineEdge,
-    /// By how much lines go on beyond their loose ends, in their direction there, as strokes of a
-    /// draughtsman do; in logical pixels. A stroke is at most as long as its line. Closed lines
-    /// and lines that meet others have no loose ends. With `weight.taper`, lines become thinner
-    /// towards the end of the stroke. Needs `smooth` lines. At most 64 physical pixels. Range 0
-    /// (off) to 16, default 0.
+    /// How far lines extend straight beyond their loose ends, as in an architect's sketch, in
+    /// logical pixels; at most by their own length. Closed lines and lines that meet others have no
+    /// loose ends. With `weight.taper`, lines become thinner towards the end of the stroke. Needs
+    /// `smooth` lines. At most 64 physical pixels. Range 0 (off) to 16, default 0.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub overshoot: f32,
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
-    /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
-    /// distance: there they are thinner, and below 0.6 physical pixels fainter. The area reaches
-    /// `2 * width / ink_budget` far from a line, at least 16 and at most 1024 physical pixels, and
-    /// its middle counts most. So a line that is alone keeps its width, and so do a pair, a
-    /// crossing or a branch. Faithful lines have no budget. Needs compute shaders.
-    /// Range 0.05 to 1 (no limit), default 0.35.
+    /// Fraction of an area that lines may cover where they crowd, as on foliage or in the distance:
+    /// there they are thinner, and below 0.6 physical pixels fainter. Density is measured within
+    /// `2 * width / ink_budget` of a line (at least 16 and at most 1024 physical pixels), with most
+    /// weight in the middle, so single lines, pairs, crossings and branches keep their width.
+    /// Faithful lines have no budget. Needs compute shaders. Range 0.05 to 1 (no limit), default
+    /// 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub ink_budget: f32,
     /// How lines move: as if each drawing of a film had been inked anew. Default:
@@ -213,7 +211,7 @@ impl Outlines {
         ..Self::NONE
     };
 
-    /// The lines of marked objects: their styles say which kinds, and how wide they are.
+    /// The lines of highlighted objects: their styles say which kinds, and how wide they are.
     #[cfg(feature = "objects")]
     pub(crate) const MARKS: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
@@ -335,7 +333,7 @@ impl Outlines {
     }
 
     /// Whether completing lines reads normals.
-    pub(crate) fn weighs_by_normals(&self) -> bool {
+    pub(crate) fn needs_normals(&self) -> bool {
         self.weight.reads_normals() || self.has_lit_edges()
     }
 

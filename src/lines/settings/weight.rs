@@ -12,8 +12,8 @@ use crate::{
     settings::{FieldRange, blend_ratio, clamp_fields},
 };
 
-/// How wide lines are in different places. Every number is a factor of the line's width, or
-/// says how a factor is found; the factors are multiplied. With the defaults, all are 1.
+/// Varies the width of lines from place to place. Each setting is or determines a factor of the
+/// line's width; the factors are multiplied. With the defaults, all are 1.
 ///
 /// They apply to corrected lines, on devices with compute shaders. The ideas are those of ink
 /// drawing: thick outside and thin inside, heavy in the shade, tapered where a line ends. The light

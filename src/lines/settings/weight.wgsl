@@ -18,7 +18,7 @@ struct Weight {
     shade: f32,
     // Unit vector along the edge of the nib, in the picture (y down).
     nib_edge: vec2<f32>,
-    nib: f32,
+    nib_roundness: f32,
     lit: f32,
     perspective: f32,
     // Cracks over which a line becomes thinner towards a loose end.
@@ -61,7 +61,7 @@ fn perspective_weight(w: Weight, f: DepthFrame, d: f32) -> f32 {
 // `along`: the unit vector along the line, in the picture.
 fn nib_weight(w: Weight, along: vec2<f32>) -> f32 {
     let across = along.x * w.nib_edge.y - along.y * w.nib_edge.x;
-    return length(vec2(across, w.nib * dot(along, w.nib_edge)));
+    return length(vec2(across, w.nib_roundness * dot(along, w.nib_edge)));
 }
 
 // `cracks`: those between the crack and the loose end of its line.

@@ -48,8 +48,9 @@ pub(super) use tolerant::TolerantIds;
 /// world; a change takes effect in the next frame.
 ///
 /// Object ids are drawn by a second pass over the meshes of the depth prepass. On a device that
-/// computes positions in that pass slightly differently, pixels have no id where depth has to
-/// be equal: lines between objects, and what follows objects, are torn or missing there.
+/// computes slightly different positions in that pass, the test for equal depth fails at some
+/// pixels, which then have no id: lines between objects, and effects that follow objects, break up
+/// there.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource, Default, Clone, PartialEq)]
 #[non_exhaustive]

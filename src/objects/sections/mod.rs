@@ -48,9 +48,9 @@ pub(crate) use table::{
 /// Divides the meshes of this entity and of its descendants into sections: parts that bend
 /// nowhere as sharply as `angle`. Where two sections of an object meet, there is a crease.
 ///
-/// Cameras divide all meshes by themselves, by rules that leave some edges and meshes out: see
-/// [`CreaseSource`](crate::lines::CreaseSource). This component replaces these rules on single meshes
-/// and scenes. Borders of sections depend neither on the view, nor on the distance, nor on normal
+/// By default, cameras divide all meshes, by rules that leave out some edges and meshes: see
+/// [`CreaseSource`](crate::lines::CreaseSource). On the meshes of this component, `angle` replaces
+/// these rules. Borders of sections depend neither on the view, nor on the distance, nor on normal
 /// maps. The creases themselves are those of the camera's [`Outlines`](crate::Outlines).
 ///
 /// A mesh is divided once, in a background task (see [`MeshTasks`]), from its positions: normals do
@@ -60,10 +60,10 @@ pub(crate) use table::{
 /// meshes have the sections of their rest pose. Parts of a mesh that only touch or pass
 /// through each other are sections too.
 ///
-/// Meshes of an [`OutlineGroup`](crate::OutlineGroup) and primitives of a glTF node continue
-/// each other: there, borders of sections that neither bend by 10 degrees nor have a step are left out. If
-/// several entities above a mesh have the component, the nearest one counts. Faithful
-/// creases do not use sections.
+/// Meshes of an [`OutlineGroup`](crate::OutlineGroup) and primitives of a glTF node are treated as
+/// one surface: a border between two of their sections has no crease where the surface neither
+/// bends by 10 degrees nor has a step. If several entities above a mesh have the component, the
+/// nearest one counts. Faithful creases do not use sections.
 ///
 /// A mesh with [`ATTRIBUTE_MESH_SECTION`] has the sections of its author.
 ///
@@ -112,12 +112,12 @@ pub enum MeshTasks {
     Immediate,
 }
 
-/// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
-/// vertex of a triangle decides. Two numbers that differ by a multiple of 64 are the same
-/// section; at a triangle of section 0 there are no creases at all. The loader of a glTF file
-/// must be told about attributes of its own (`GltfPlugin::add_custom_vertex_attribute`). If such a
-/// mesh is divided, because it has [`MeshSections`] or a camera asks for the edges of all meshes, its
-/// sections count for all cameras.
+/// The section of a vertex, which replaces those that [`MeshSections`] finds. The first vertex of a
+/// triangle decides. Two numbers that differ by a multiple of 64 are the same section; at a
+/// triangle of section 0 there are no creases at all. The loader of a glTF file must be told about
+/// attributes of its own (`GltfPlugin::add_custom_vertex_attribute`). Once such a mesh is divided,
+/// because it has [`MeshSections`] or a camera asks for the edges of all meshes, all cameras use
+/// its sections.
 pub const ATTRIBUTE_MESH_SECTION: MeshVertexAttribute =
     MeshVertexAttribute::new("MeshSection", 0x636f_6d69_6373, VertexFormat::Uint32);
 

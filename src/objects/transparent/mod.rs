@@ -49,9 +49,9 @@ pub(super) use items::TransparentItems;
 /// effects use its own distance. The engine's depth and its picture do not change: what is
 /// behind glass stays visible through it.
 ///
-/// For meshes whose material has the alpha mode `Blend`, `Premultiplied`, `Add` or `Multiply`,
-/// or transmission. On other meshes it does nothing, because the engine's depth prepass has
-/// them already. Among several transparent meshes, the nearest one counts.
+/// For meshes whose material has the alpha mode `Blend`, `Premultiplied`, `Add` or `Multiply`, or
+/// transmission. On other meshes it has no effect: they are already in the engine's depth prepass.
+/// Where several such meshes overlap, the nearest one is used.
 ///
 /// | material | pixels that are written |
 /// |---|---|

@@ -83,8 +83,10 @@ fn any_number_of_the_tone_ramp_is_clamped() {
     };
     let at = ramp(|r, x| r.light_at = x);
     fuzz("ToneRamp::light_at", 0.0, 1.0, |x| at(x).light_at);
-    let far = ramp(|r, x| r.far_softness = x);
-    fuzz("ToneRamp::far_softness", 0.0, 1.0, |x| far(x).far_softness);
+    let far = ramp(|r, x| r.distant_softness = x);
+    fuzz("ToneRamp::distant_softness", 0.0, 1.0, |x| {
+        far(x).distant_softness
+    });
     let reach = ramp(|r, x| r.reach = x);
     fuzz("ToneRamp::reach", 0.01, 1.0, |x| reach(x).reach);
 }

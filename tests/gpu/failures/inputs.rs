@@ -185,9 +185,9 @@ fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The faithful form draws slopes as the paper does; the default does not.
+/// The faithful equations draw slopes as the paper does; the default ones do not.
 #[test]
-fn the_default_draws_no_slopes_and_the_faithful_form_does() {
+fn the_default_draws_no_slopes_and_the_faithful_equations_do() {
     let mut small = Small::new(size(), Msaa::Off);
     let mut ink = |equations| {
         let contours = Contours {

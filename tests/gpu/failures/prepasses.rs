@@ -56,7 +56,7 @@ pub fn still(small: &mut Small) -> image::RgbaImage {
 /// until the pipeline of the second is ready. Regression: the prepass was removed
 /// at once, and the original picture was shown.
 #[test]
-fn a_look_keeps_its_prepass_until_the_next_one_is_compiled() {
+fn a_style_keeps_its_prepass_until_the_next_one_is_compiled() {
     let mut small = in_background();
     let bare = still(&mut small);
     small.insert(Desaturation::default());
@@ -86,7 +86,7 @@ fn a_look_keeps_its_prepass_until_the_next_one_is_compiled() {
 
 /// The normal prepass stays as long as creases are drawn.
 #[test]
-fn creases_keep_their_normals_until_the_next_look_is_compiled() {
+fn creases_keep_their_normals_until_the_next_style_is_compiled() {
     let mut small = in_background();
     small.insert(Outlines {
         creases: Some(Creases::default()),

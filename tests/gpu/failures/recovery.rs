@@ -153,7 +153,7 @@ fn recover(small: &mut Small) {
 /// Styles with their names; the first one is none.
 type Styles = [(&'static str, Option<ComicStyle>)];
 
-/// The picture of the engine alone, and those of the styles, with marked objects.
+/// The picture of the engine alone, and those of the styles, with highlighted objects.
 fn shoot_all(
     (small, marked): (&mut Small, [Entity; 2]),
     msaa: Msaa,
@@ -170,7 +170,7 @@ fn shoot_all(
 /// The camera has the last group while the device is replaced.
 fn check(size: UVec2, msaa: Msaa, groups: &[Group]) {
     let (mut small, marked) = scene(size, msaa);
-    let mut styles = vec![("marked objects", None)];
+    let mut styles = vec![("highlighted objects", None)];
     styles.extend(groups.iter().map(|(name, style)| (*name, Some(style()))));
     let (last, all) = styles.last().cloned().expect("there is a first one");
     shoot(&mut small, msaa, all.as_ref());

@@ -112,7 +112,7 @@ fn harmony_matches_the_reference_stays_in_gamut_and_keeps_greys() {
             if !c.iter().all(|x| (0.0..=1.0).contains(x)) {
                 return;
             }
-            // The faithful form returns through a power, whose error is 2e-5.
+            // The faithful equations return through a power, whose error is 2e-5.
             let over = match s.equations {
                 Equations::Faithful => 2e-5,
                 _ => 0.0,

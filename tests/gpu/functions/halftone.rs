@@ -11,7 +11,7 @@ use crate::prelude::*;
 const HALFTONE: &str =
     "#import bevy_comics::effects::halftone::{Halftone, page_screen, plate_cover}";
 
-/// Places up to 2000 pixels from the middle, tones with both ends, periods from 2 to 40.
+/// Places up to 2000 pixels from the middle, tones with both ends, cells from 2 to 40 pixels.
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a
 /// thousandth there.
 #[test]
@@ -28,8 +28,8 @@ fn coverages_of_all_shapes_match_the_reference() {
         0u32..4,
         (0.0f32..3.0, -1.0f32..=1.0),
     )
-        .prop_map(|((x, y), tone, period, degrees, plate, (spread, height))| {
-            [x, y, tone, period, degrees, plate as f32, spread, height]
+        .prop_map(|((x, y), tone, cell_size, degrees, plate, (ink_bleed, height))| {
+            [x, y, tone, cell_size, degrees, plate as f32, ink_bleed, height]
         });
     for shape in SHAPES {
         let number = shape as u32;
@@ -44,7 +44,7 @@ fn coverages_of_all_shapes_match_the_reference() {
                      s.cell_size = i(3u);
                      s.grain = max(i(3u) / 3.0, 1.0);
                      s.shape = {number}u;
-                     s.spread = i(6u);
+                     s.ink_bleed = i(6u);
                      let on = page_screen(s, i(7u));
                      let k = plate_cover(s, on, vec2(i(0u), i(1u)), i32(i(5u)), i(2u));
                      return vec4(k, s.cosines.x, s.sines.x, 0.0);"
@@ -52,17 +52,17 @@ fn coverages_of_all_shapes_match_the_reference() {
                 rows,
             );
             for (row, found) in rows.iter().zip(results) {
-                let spread = f64::from(row[6]);
+                let ink_bleed = f64::from(row[6]);
                 // The angle as the adapter's cosine has it: its error would move places
                 // far away by pixels.
                 let degrees = f64::from(found[2]).atan2(f64::from(found[1])).to_degrees();
                 let scale = f64::from(found[1]).hypot(f64::from(found[2]));
                 let plate = Plate {
                     degrees,
-                    period: 1.0 / scale,
+                    cell_size: 1.0 / scale,
                     phase: if row[5] == 3.0 { 0.25 } else { 0.0 },
                     number: row[5] as i32,
-                    spread,
+                    ink_bleed,
                     height: f64::from(row[7]),
                 };
                 let tone = f64::from(row[2]);

@@ -1,4 +1,4 @@
-//! Which pixels of marked objects are hidden in the picture.
+//! Which pixels of highlighted objects are hidden in the picture.
 
 use super::{
     bound::{floats, pairs, texture},

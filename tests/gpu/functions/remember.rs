@@ -47,7 +47,7 @@ struct Scene {
     scale: [f64; 2],
     /// Pixels of the grid between the depths that are compared.
     spacing: i64,
-    share: f32,
+    blend_factor: f32,
     /// What jumps between surfaces are a quarter of: a factor of the depth, and a constant.
     reference: [f32; 2],
     motions: Motions,
@@ -95,7 +95,7 @@ fn larger(texel: impl Fn(At) -> [f32; 4]) -> wgpu::TextureView {
 }
 
 impl Scene {
-    fn new(n: &mut Numbers, grid: ([f64; 2], i64), share: f32, motions: Motions) -> Self {
+    fn new(n: &mut Numbers, grid: ([f64; 2], i64), blend_factor: f32, motions: Motions) -> Self {
         let (scale, spacing) = grid;
         let all = [0, 1, 2, 3, 4, 5];
         let ink = inked(n);
@@ -120,8 +120,8 @@ impl Scene {
         Self {
             scale,
             spacing,
-            share,
-            reference: if share == 0.25 {
+            blend_factor,
+            reference: if blend_factor == 0.25 {
                 [0.0, 0.5]
             } else {
                 [1.0, 0.0]
@@ -192,7 +192,7 @@ impl Scene {
 
     /// Positions of the grid are a quarter of a pixel away from those of the viewport.
     fn body(&self) -> String {
-        let (spacing, share) = (self.spacing, self.share);
+        let (spacing, blend_factor) = (self.spacing, self.blend_factor);
         let ([right, down], [grid_width, grid_height]) = (self.scale, self.grid());
         let [factor, constant] = self.reference;
         let [width, height] = SIZE;
@@ -202,7 +202,7 @@ impl Scene {
              line_pass.grid.rect = vec4({left}, {top}, {grid_width}, {grid_height});
              line_pass.grid.from_viewport = vec4({right:?}, {down:?}, -0.25, 0.25);
              line_pass.memory.spacing = {spacing};
-             line_pass.memory.share = {share:?};
+             line_pass.memory.blend_factor = {blend_factor:?};
              line_pass.settings.jump = 0.25;
              line_pass.settings.reference_factor = {factor:?};
              line_pass.settings.reference_constant = {constant:?};
@@ -247,7 +247,7 @@ impl Scene {
             counts: self.counts[index(from)].map(f64::from),
             seen: (0..2).all(|k| place[k] >= 0.0 && place[k] < SIZE[k] as f64),
             speed: moved[0].hypot(moved[1]),
-            share: self.share.into(),
+            blend_factor: self.blend_factor.into(),
         };
         (pixel, from)
     }
@@ -312,7 +312,7 @@ fn remembered_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
     let mut tally = [0; 6];
     for motions in [STILL, SLOW, MOVING] {
-        for (grid, share) in [
+        for (grid, blend_factor) in [
             (([1.0, 1.0], 1), 0.125),
             (([1.0, 1.0], 2), 0.25),
             (([2.0, 2.0], 3), 0.125),
@@ -320,7 +320,7 @@ fn remembered_pixels_match_the_reference() {
             (([2.0, 1.0], 3), 0.25),
             (([1.0, 1.0], 1), 1.0),
         ] {
-            let scene = Scene::new(&mut n, grid, share, motions);
+            let scene = Scene::new(&mut n, grid, blend_factor, motions);
             assert_matches_the_reference(&scene, &mut tally);
         }
     }

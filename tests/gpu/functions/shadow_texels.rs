@@ -1,5 +1,5 @@
 //! The slope of the shadow in cube maps. That of flat shadow maps is checked in
-//! `toon/lamp_shadow.rs`.
+//! `toon/light_shadow.rs`.
 
 use bevy_comics_testkit::reference::shadow_texels::{SAMPLES, nearest_plane};
 

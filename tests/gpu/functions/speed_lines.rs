@@ -55,15 +55,15 @@ fn settings(lines: &SpeedLines, view: &EffectContext) -> String {
 
 /// A view of this size in physical pixels, at a scale factor, `seconds` after the start.
 fn view([width, height]: [u32; 2], scale_factor: f32, seconds: f64) -> EffectContext {
-    let mut facts = EffectContext::default();
-    facts.viewport = UVec4::new(0, 0, width, height);
-    facts.scale_factor = scale_factor;
-    facts.seconds = seconds;
-    facts
+    let mut context = EffectContext::default();
+    context.viewport = UVec4::new(0, 0, width, height);
+    context.scale_factor = scale_factor;
+    context.seconds = seconds;
+    context
 }
 
-fn coverage(lines: &SpeedLines, facts: &EffectContext, places: &[[f32; 2]]) -> Vec<f64> {
-    let s = settings(lines, facts);
+fn coverage(lines: &SpeedLines, context: &EffectContext, places: &[[f32; 2]]) -> Vec<f64> {
+    let s = settings(lines, context);
     let body = format!(
         "let s = {s};
          return vec4(speed_line_coverage(s, vec2(i(0u), i(1u))), 0.0, 0.0, 0.0);"
@@ -72,15 +72,15 @@ fn coverage(lines: &SpeedLines, facts: &EffectContext, places: &[[f32; 2]]) -> V
     found.iter().map(|v| f64::from(v[0])).collect()
 }
 
-fn reference(lines: &SpeedLines, facts: &EffectContext) -> Drawing {
-    let size = [facts.viewport.z, facts.viewport.w].map(f64::from);
+fn reference(lines: &SpeedLines, context: &EffectContext) -> Drawing {
+    let size = [context.viewport.z, context.viewport.w].map(f64::from);
     let centre = lines.center.to_array().map(f64::from);
     Drawing {
         settings: *lines,
         size,
-        scale: f64::from(facts.scale_factor),
+        scale: f64::from(context.scale_factor),
         centre: [centre[0] * size[0], centre[1] * size[1]],
-        number: facts.animation_seed(lines.rate),
+        number: context.animation_seed(lines.rate),
     }
 }
 
@@ -105,13 +105,13 @@ fn lines_cover_their_widths_around_a_circle() {
     const POINTS: u32 = 120_000;
     for scale in [1.0f32, 1.25, 3.0] {
         let size = [1000, 600].map(|v| (f64::from(v) * f64::from(scale)) as u32);
-        let facts = view(size, scale, 0.0);
+        let context = view(size, scale, 0.0);
         let lines = SpeedLines {
             inner: 0.3,
             width: 6.0,
             ..SpeedLines::default()
         };
-        let drawing = reference(&lines, &facts);
+        let drawing = reference(&lines, &context);
         // Beyond the last inner end (0.3 * 500 * 1.8 = 270) and as far as the corners.
         for rho in [300.0, 450.0, 583.0] {
             let rho = rho * f64::from(scale);
@@ -125,7 +125,7 @@ fn lines_cover_their_widths_around_a_circle() {
                     [0, 1].map(|i| (drawing.centre[i] + at[i]) as f32)
                 })
                 .collect();
-            let found = coverage(&lines, &facts, &places);
+            let found = coverage(&lines, &context, &places);
             let covered: f64 = found.iter().sum::<f64>() * TAU * rho / f64::from(POINTS);
             // Radii of the ellipse differ along the circle: that of each line's direction.
             let widths: f64 = (0..lines.count)
@@ -160,7 +160,7 @@ fn lines_cover_their_widths_around_a_circle() {
 /// Truth: nothing is drawn in the ellipse that stays clear, of either kind.
 #[test]
 fn the_middle_stays_clear() {
-    let facts = view([1000, 600], 1.0, 3.0);
+    let context = view([1000, 600], 1.0, 3.0);
     for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
         let lines = SpeedLines {
             kind,
@@ -178,7 +178,7 @@ fn the_middle_stays_clear() {
                 [500.0 + 600.0 * by * cos, 300.0 + 360.0 * by * sin]
             })
             .collect();
-        let found = coverage(&lines, &facts, &places);
+        let found = coverage(&lines, &context, &places);
         let ink = found.iter().filter(|c| **c > 0.0).count();
         assert_eq!(ink, 0, "{kind:?}");
     }

@@ -65,7 +65,7 @@ fn views() -> Vec<Definitions> {
             "OBLIQUE",
             "VISIBLE_RANGE",
             "SAME_SIZE",
-            "FINISH",
+            "COMPOSITE",
         ]),
         stored.to_vec(),
         numbers("MAP_FLAGS", 0..4),
@@ -153,7 +153,7 @@ fn debug_views() -> Vec<Definitions> {
     let all = product(&[
         views,
         vec![Vec::new(), without("outlines"), without("sketch")],
-        optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]),
+        optional(&["MULTISAMPLED", "OBLIQUE", "COMPOSITE"]),
     ]);
     let of_view = |parts: &Definitions| of_pass(&[parts, &[("DEBUG_VIEW", None)]]);
     all.iter().map(of_view).collect()

@@ -10,7 +10,7 @@ pub fn variants() -> Vec<Variant> {
     [finding(), walking(), completing(), settling(), drawing()].concat()
 }
 
-/// What lines are along: the kinds of a view, and last those of marked objects.
+/// What lines are along: the kinds of a view, and last those of highlighted objects.
 const KINDS: &str = "
     | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES
     | CREASES OBJECT_EDGES | SILHOUETTES CREASES OBJECT_EDGES
@@ -231,7 +231,7 @@ fn drawing() -> Vec<Variant> {
         "| SURFACE | SURFACE INWARD | SURFACE EDGE_STYLES",
         "| BOIL",
         "| TAPER_WEIGHT",
-        "| SPREAD",
+        "| INK_BLEED",
         "| STREAKS",
     ];
     const LISTS: &[&str] = &[
@@ -242,7 +242,7 @@ fn drawing() -> Vec<Variant> {
         "| SURFACE | SURFACE INWARD | SURFACE EDGE_STYLES",
         "| BRIDGED",
         "| BOIL",
-        "| SPREAD",
+        "| INK_BLEED",
         "| STREAKS",
     ];
     const RESOLVED: &[&str] = &[

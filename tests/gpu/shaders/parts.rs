@@ -1,4 +1,5 @@
-//! The passes of a plan that is divided, and the parts of its last pass, see `Part` of the crate.
+//! The passes of a plan that is divided, and the areas that its last pass draws: `DrawnArea` of the
+//! crate.
 
 use super::{
     Definitions,
@@ -20,9 +21,9 @@ pub fn variants() -> Vec<Definitions> {
 fn divided() -> Vec<Definitions> {
     const FORMS: &[&str] = &[
         "| CONTINUED",
-        "| LAYER",
+        "| EARLIER_PASS",
         "| INSIDE",
-        "| FINISH",
+        "| COMPOSITE",
         "| MULTISAMPLED",
         "| UNSTYLED_COLORS",
         "| UNSTYLED_PRINT",
@@ -56,13 +57,13 @@ fn passes_of(Modes { effect, modes }: &Modes) -> Vec<Definitions> {
         if reads(&mode, "AUX_SCALAR") {
             let mut numbers = mode;
             numbers.retain(|(name, _)| *name != "AUX_SCALAR");
-            numbers.extend(flags(&["DRAWS_NUMBERS"]));
-            numbers.push(flag(format!("NUMBERS_{name}")));
+            numbers.extend(flags(&["DRAWS_AUX_SCALAR"]));
+            numbers.push(flag(format!("AUX_SCALAR_OF_{name}")));
             all.push(numbers);
         }
     }
     let mut earlier = modes[0].clone();
-    earlier.extend([("LAYER", None), flag(format!("WITHOUT_{name}"))]);
+    earlier.extend([("EARLIER_PASS", None), flag(format!("WITHOUT_{name}"))]);
     all.push(earlier);
     all
 }
@@ -162,7 +163,7 @@ fn bases() -> Vec<Definitions> {
         "| OBJECT_STYLES",
         "| LINE_OWNERS | LINE_OWNERS IN_LAYERS | LINE_OWNERS IN_LAYERS DEPTH_BORDERS",
         "| CONTINUED",
-        "| FINISH",
+        "| COMPOSITE",
         "| INSIDE",
         "| SAME_SIZE",
         "| MULTISAMPLED",

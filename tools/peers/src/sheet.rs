@@ -88,7 +88,7 @@ fn row(who: Who) -> Vec<RgbaImage> {
     Lighting::ALL.map(picture).into()
 }
 
-/// Skin by the share of all light, with one edge under several lamps. The looks of the figure are
+/// Skin by the fraction of all light, with one edge under several lamps. The looks of the figure are
 /// made for the light of its scene.
 fn share_light(world: &mut World) {
     let color = |code| Color::from(Srgba::hex(code).expect("a color"));

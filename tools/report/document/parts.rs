@@ -30,7 +30,7 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
          differs from the default:\n",
         size(&times)
     );
-    // The layer of marked objects is drawn after the engine's prepass.
+    // The layer of highlighted objects is drawn after the engine's prepass.
     for (section, before, laps) in [
         ("lines", "", &OWN[..]),
         (

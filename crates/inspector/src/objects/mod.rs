@@ -109,7 +109,7 @@ impl Objects {
             if let Some(material) = world.get::<bevy_comics::toon::MaterialName>(object) {
                 ui.label(format!("material {}", material.0));
             }
-            let deselect = ("object.deselect", "Deselect", "Lets go of the object (Esc)");
+            let deselect = ("object.deselect", "Deselect", "Deselects the object (Esc)");
             if button_with_tooltip(ui, widgets, deselect, true) {
                 world.resource_mut::<ComicsInspector>().picked = None;
             }

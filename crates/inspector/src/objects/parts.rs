@@ -169,7 +169,7 @@ impl Objects {
         let entity = source::<T>(world, object).unwrap_or(object);
         if entity != object {
             let text = format!(
-                "Edits that of {}, which is inherited.",
+                "Edits the component of {}, from which it is inherited.",
                 name_of(world, entity)
             );
             let from = ui.label(text);

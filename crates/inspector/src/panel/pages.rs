@@ -28,7 +28,7 @@ impl Panel {
         match self.memory.tab {
             Tab::Style => {
                 if world.entity(camera).contains::<StyleTransition>() {
-                    ui.label("The style is in transition to another one. A change ends it.");
+                    ui.label("A transition to another style is running. Editing ends it.");
                 }
                 let effects = world.resource::<EffectRegistry>().types();
                 let types = self.types.get_or_insert_with(|| fields::types(&effects));

@@ -67,7 +67,7 @@ impl Panel {
             self.copy_and_paste(ui, world, style, widgets);
         });
         ui.horizontal_wrapped(|ui| {
-            self.two_looks(ui, camera, style, widgets);
+            self.two_styles(ui, camera, style, widgets);
             self.original(ui, world, camera, widgets);
             split(ui, world, camera, widgets);
         });
@@ -180,7 +180,7 @@ impl Panel {
     }
 
     /// The buttons of the two styles that are compared.
-    fn two_looks(
+    fn two_styles(
         &mut self,
         ui: &mut Ui,
         camera: Entity,
@@ -259,7 +259,7 @@ fn weight(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets)
     let mut weight = entity.get::<StyleWeight>().copied().unwrap_or_default().0;
     let slider = ui
         .add(egui::Slider::new(&mut weight, 0.0..=1.0).text("Weight"))
-        .on_hover_text("How much of the style is mixed into the picture: 0 is the original, 1 the full style. Not part of the style; the component StyleWeight.");
+        .on_hover_text("Strength of the style: 0 is the original picture, 1 the full style. Sets the component StyleWeight, which is not part of the style.");
     note(widgets, "weight", &slider);
     if slider.changed() {
         if weight == 1.0 {

@@ -75,7 +75,7 @@ pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) 
         let atmosphere = f64::from(Hsva::from(s.color).hue) / 360.0;
         let hue = match s.mode {
             ColorizationMode::Linear => hue_of(c) * l + atmosphere * d,
-            ColorizationMode::Quadratic => hue_of(c) * l.sqrt() + atmosphere * d.sqrt(),
+            ColorizationMode::SquareRoot => hue_of(c) * l.sqrt() + atmosphere * d.sqrt(),
             _ => atmosphere,
         };
         let p = hue_color(hue);

@@ -9,7 +9,7 @@ use bevy_comics::{Desaturation, effects::Equations};
 /// Fraction of the saturation that is left; `l`: complement of the depth map.
 pub fn saturation_left(s: &Desaturation, l: f64) -> f64 {
     let k = l.max(0.0).powf(f64::from(s.exponent));
-    let [near, far] = [s.near, s.amount].map(f64::from);
+    let [near, far] = [s.amount_near, s.amount].map(f64::from);
     1.0 - (near + (far - near) * (1.0 - k))
 }
 

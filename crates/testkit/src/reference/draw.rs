@@ -88,11 +88,11 @@ impl Cracks {
         let counts = |crack: &Crack| s.gap_closing == 0 || !crack.ledge;
         let sources = all.iter().filter(|(_, crack)| counts(crack));
         let sources = sources.map(|(place, crack)| (*place, *crack)).collect();
-        let specks = match s.min_length {
+        let min_length = match s.min_length {
             ..2 => 1,
             least => (f64::from(least) * scale).ceil().min(64.0) as u32,
         };
-        let linked = found.complete((&all, &sources), (steps, specks, s), (view, jump(s)));
+        let linked = found.complete((&all, &sources), (steps, min_length, s), (view, jump(s)));
         let longest = if s.smooth {
             (f64::from(s.overshoot) * scale).min(64.0)
         } else {
@@ -107,7 +107,7 @@ impl Cracks {
     }
 
     /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends are
-    /// extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
+    /// extended; `linked`: the cracks of all lines, min_length included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),
@@ -160,18 +160,18 @@ impl Cracks {
 
     /// Closes gaps, leaves out the cracks that are not parts of lines, and bends the lines of the
     /// others. `all`: those that were found, and `sources` without ledges.
-    /// Returns the cracks of all lines, specks included.
+    /// Returns the cracks of all lines, min_length included.
     fn complete(
         &mut self,
         (all, sources): (&HashMap<Place, Crack>, &HashMap<Place, Crack>),
-        (steps, specks, s): (i32, u32, &Outlines),
+        (steps, min_length, s): (i32, u32, &Outlines),
         (view, jump): (&View, f64),
     ) -> HashSet<Place> {
         let width = self.width;
         let mut linked = joined(&linked(all, steps), all);
         let closed = gaps(&linked, s.gap_closing);
         linked.extend(&closed);
-        let kept = without_specks(&linked, [self.width, self.height], specks);
+        let kept = without_specks(&linked, [self.width, self.height], min_length);
         let links = s.hysteresis > 0.0 || s.min_length > 1 || s.gap_closing > 0;
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
             for (side, slot) in cracks.iter_mut().enumerate() {

@@ -157,10 +157,10 @@ impl Scene<'_> {
             let step = [0.8, 0.6].map(|v| (side * by * v + 0.5).floor() as i64);
             let other = self.inside([at[0] as i64 + step[0], at[1] as i64 + step[1]]);
             let found = self.sheet.at(other);
-            let share = taken(own, self.focus_of(s, other));
+            let fraction = taken(own, self.focus_of(s, other));
             [0, 1, 2].map(|c| {
                 let color = found[c] + (1.0 - found[3]) * instead[c];
-                mix(instead[c], color, share)
+                mix(instead[c], color, fraction)
             })
         };
         let (near, far) = (taken(low), taken(low + 1.0));

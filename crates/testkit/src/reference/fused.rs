@@ -1,5 +1,5 @@
 //! Reference of `fused/fused.wgsl` with the effects of this crate: the fused pass for
-//! one pixel, without the finish, the debug views and screens of grains.
+//! one pixel, without the composite, the debug views and screens of grains.
 
 use bevy::math::{UVec2, UVec4};
 

@@ -9,16 +9,16 @@ use bevy_comics::{
 
 use super::{Rgb, Rgba, color, mix, screen, sheet::Sheet, similarity::Similarity, smoothstep};
 
-/// Where a screen is read: the plate's angle, the period in pixels, the phase in cells.
+/// Where a screen is read: the plate's angle, the size of a cell in pixels, the phase in cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Plate {
     pub degrees: f64,
-    pub period: f64,
+    pub cell_size: f64,
     pub phase: f64,
     /// Number of the plate: 0 cyan, 1 magenta, 2 yellow, 3 black.
     pub number: i32,
     /// How far edges of ink are displaced at most, in pixels, and the height of the sheet.
-    pub spread: f64,
+    pub ink_bleed: f64,
     pub height: f64,
 }
 
@@ -28,10 +28,10 @@ impl Plate {
         let angles = [s.cyan_angle, s.magenta_angle, s.yellow_angle, s.black_angle];
         std::array::from_fn(|i| Self {
             degrees: f64::from(angles[i]),
-            period: f64::from(s.cell_size) * scale,
+            cell_size: f64::from(s.cell_size) * scale,
             phase: if i == 3 { 0.25 } else { 0.0 },
             number: i as i32,
-            spread: 0.0,
+            ink_bleed: 0.0,
             height: 0.0,
         })
     }
@@ -39,7 +39,7 @@ impl Plate {
     /// Cells of a place in pixels.
     pub fn cell(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.degrees.to_radians().sin_cos();
-        [(cos * x + sin * y), (cos * y - sin * x)].map(|v| v / self.period + self.phase)
+        [(cos * x + sin * y), (cos * y - sin * x)].map(|v| v / self.cell_size + self.phase)
     }
 }
 
@@ -52,24 +52,26 @@ pub fn plate_cover<'a>(
     tile: &'a dyn Fn(i64, i64) -> f64,
 ) -> Box<dyn Fn([f64; 2]) -> f64 + 'a> {
     let t = tone.clamp(screen::LEAST, 1.0 - screen::LEAST);
-    let moved = screen::edges(shape, t) * plate.spread / plate.period;
+    let moved = screen::edges(shape, t) * plate.ink_bleed / plate.cell_size;
     let printed = t - moved.min(0.9 * t.min(1.0 - t)) * plate.height;
     let (sin, cos) = plate.degrees.to_radians().sin_cos();
-    let period = plate.period;
+    let cell_size = plate.cell_size;
     // The width of a pixel across lines along x or y of the cell.
-    let across = (sin.abs() + cos.abs()) / period;
+    let across = (sin.abs() + cos.abs()) / cell_size;
     let shaped: Box<dyn Fn([f64; 2]) -> f64> = match shape {
-        ScreenShape::Round => Box::new(move |p| screen::disc(plate.cell(p), printed, period)),
+        ScreenShape::Round => Box::new(move |p| screen::disc(plate.cell(p), printed, cell_size)),
         ScreenShape::Euclidean => {
-            Box::new(move |p| screen::euclidean(plate.cell(p), printed, period))
+            Box::new(move |p| screen::euclidean(plate.cell(p), printed, cell_size))
         }
         ScreenShape::Line => Box::new(move |p| screen::line(plate.cell(p)[0], printed, across)),
-        ScreenShape::Diamond => Box::new(move |p| screen::diamond(plate.cell(p), printed, period)),
+        ScreenShape::Diamond => {
+            Box::new(move |p| screen::diamond(plate.cell(p), printed, cell_size))
+        }
         ScreenShape::Cross => {
             Box::new(move |p| screen::cross_lines(plate.cell(p), printed, across))
         }
         ScreenShape::Stochastic => Box::new(move |p| {
-            let size = (period / 3.0).max(1.0);
+            let size = (cell_size / 3.0).max(1.0);
             stochastic(p, size, printed, |x, y| {
                 let number = i64::from(plate.number);
                 tile(x + 19 * number, y + 37 * number)
@@ -102,10 +104,10 @@ pub fn followed_cover<'a>(
     let octave = |size: f64| {
         let plate = Plate {
             degrees: plate.degrees + follows.turn,
-            period: plate.period * if grains { 1.0 } else { size },
+            cell_size: plate.cell_size * if grains { 1.0 } else { size },
             ..plate
         };
-        let shown = smoothstep(1.5, 2.5, plate.period);
+        let shown = smoothstep(1.5, 2.5, plate.cell_size);
         let cover = plate_cover(shape, plate, tone, tile);
         move |place| {
             if grains {
@@ -144,10 +146,10 @@ fn stochastic([x, y]: [f64; 2], size: f64, tone: f64, tile: impl Fn(i64, i64) ->
 
 /// The tones of the plates for a colour in linear light.
 pub fn plate_tones(s: &Halftone, linear: Rgb) -> [f64; 4] {
-    let [shadows, highlights] = [s.shadows, s.highlights].map(f64::from);
-    let span = (highlights - shadows).max(0.05);
+    let [solid_below, bare_above] = [s.solid_below, s.bare_above].map(f64::from);
+    let span = (bare_above - solid_below).max(0.05);
     let c = linear.map(|c| {
-        let level = (c.clamp(0.0, 1.0).sqrt() - shadows) / span;
+        let level = (c.clamp(0.0, 1.0).sqrt() - solid_below) / span;
         level.clamp(0.0, 1.0).powi(2)
     });
     let dark = 1.0 - color::luminance(c);
@@ -214,7 +216,7 @@ fn cell_color(plate: Plate, cells: &Cells, at: [f64; 2], own: Rgb) -> Rgb {
     let (sin, cos) = plate.degrees.to_radians().sin_cos();
     let mut sum = [0.0; 3];
     for [u, v] in [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]] {
-        let [u, v] = [middle[0] + u, middle[1] + v].map(|w| (w - plate.phase) * plate.period);
+        let [u, v] = [middle[0] + u, middle[1] + v].map(|w| (w - plate.phase) * plate.cell_size);
         let place = [cos * u - sin * v, sin * u + cos * v];
         let found = (cells.picture)([0, 1].map(|i| cells.centre[i] + place[i]));
         for (c, sum) in sum.iter_mut().enumerate() {
@@ -235,7 +237,7 @@ pub fn halftone(s: &Halftone, picture: Rgba, at: [f64; 2], d: f64, cells: &Cells
     let place = [0, 1].map(|i| at[i] - cells.centre[i]);
     let k = std::array::from_fn(|i| {
         let plate = Plate {
-            spread: 0.5 * cells.sheet.spread,
+            ink_bleed: 0.5 * cells.sheet.spread,
             height: cells.sheet.under(at).height,
             ..Plate::all(s, 1.0)[i]
         };

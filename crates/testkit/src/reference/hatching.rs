@@ -146,7 +146,7 @@ impl<'a> Hatch<'a> {
             smoothstep(0.25, 0.5, (1.0 - along * along).max(0.0).sqrt())
         });
         let own = [axes[layer], axes[(layer + 1) % 3], axes[(layer + 2) % 3]];
-        let share: f64 = g[..=layer].iter().product();
+        let fraction: f64 = g[..=layer].iter().product();
         let (other, number) = if layer < 2 {
             ([own[1], own[2], own[0]], layer as u32 + 1)
         } else {
@@ -165,11 +165,11 @@ impl<'a> Hatch<'a> {
         };
         let part = |weight: f64| 1.0 - (1.0 - tone).max(1e-20).powf(weight);
         let mut light = 1.0;
-        if share > 0.0 {
-            light *= 1.0 - self.family(on, own, layer as u32, part(share));
+        if fraction > 0.0 {
+            light *= 1.0 - self.family(on, own, layer as u32, part(fraction));
         }
-        if share < 1.0 {
-            light *= 1.0 - self.family(on, other, number, part(1.0 - share));
+        if fraction < 1.0 {
+            light *= 1.0 - self.family(on, other, number, part(1.0 - fraction));
         }
         1.0 - light
     }
@@ -213,8 +213,8 @@ impl<'a> Hatch<'a> {
     /// Darkness at a lightness.
     pub fn tone(&self, light: f64) -> f64 {
         let s = self.settings;
-        let low = f64::from(s.shadows);
-        let high = f64::from(s.highlights).max(low + 0.05);
+        let low = f64::from(s.solid_below);
+        let high = f64::from(s.bare_above).max(low + 0.05);
         let t = (1.0 - smoothstep(low, high, light)).powf(f64::from(s.gamma));
         match s.tones {
             0 => t,

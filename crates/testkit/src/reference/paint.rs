@@ -31,9 +31,9 @@ pub type Area = (Means, f64);
 /// The colour of the areas by their weights and variances; `None` if there are none.
 pub fn chosen(areas: &[Area], sharpness: f64) -> Option<Rgb> {
     let seen = |m: &Means| m.variance() + UNSEEN;
-    let used = || areas.iter().filter(|(_, share)| *share > 0.0);
+    let used = || areas.iter().filter(|(_, factor)| *factor > 0.0);
     let least = used().map(|(m, _)| seen(m)).reduce(f64::min)?;
-    let weight = |(m, share): &Area| share * (least / seen(m)).powf(0.5 * sharpness);
+    let weight = |(m, factor): &Area| factor * (least / seen(m)).powf(0.5 * sharpness);
     let sum: f64 = used().map(weight).sum();
     Some(std::array::from_fn(|i| {
         let color: f64 = used().map(|area| weight(area) * area.0.color[i]).sum();
@@ -47,7 +47,7 @@ impl Scene<'_> {
         mix(f64::from(s.at_near), f64::from(s.at_far), depth) * self.scale
     }
 
-    fn share(&self, s: &Paint, own: [usize; 2], other: [i64; 2]) -> f64 {
+    fn figure_factor(&self, s: &Paint, own: [usize; 2], other: [i64; 2]) -> f64 {
         let same = !s.figures || (self.id)(own) == (self.id)(other.map(|v| v as usize));
         if same { 1.0 } else { 0.125 }
     }
@@ -60,9 +60,9 @@ impl Scene<'_> {
             _ => Vec::new(),
         };
         Sheet::new(self.sheet.size, |at| {
-            let share = |other| self.share(s, at, other);
+            let factor = |other| self.figure_factor(s, at, other);
             let areas = match s.kernel {
-                PaintKernel::Box => box_areas(self.sheet, &boxes, at, half(at), &share),
+                PaintKernel::Box => box_areas(self.sheet, &boxes, at, half(at), &factor),
                 _ => self.sectors(s, at),
             };
             over(
@@ -97,25 +97,25 @@ impl Scene<'_> {
             let whole = disc.iter().map(|(at, _)| weight(*at)).sum();
             let m = Means::mean(disc.iter().map(|(at, m)| (weight(*at), *m)), whole);
             let middle = place(direction.map(|v| 0.5 * v)).map(|v| v.floor() as i64);
-            let share = if self.sheet.contains(middle) {
-                self.share(s, at, middle)
+            let factor = if self.sheet.contains(middle) {
+                self.figure_factor(s, at, middle)
             } else {
                 1.0
             };
-            (m, m.coverage * share)
+            (m, m.coverage * factor)
         };
         (0..8).map(sector).collect()
     }
 }
 
 /// The boxes around a pixel, at both whole distances around half the radius. `boxes`: the means
-/// around every pixel; `share`: the factor for a box with its middle in another pixel.
+/// around every pixel; `factor`: the factor for a box with its middle in another pixel.
 pub fn box_areas(
     sheet: &Sheet,
     boxes: &[Means],
     at: [usize; 2],
     half: f64,
-    share: &dyn Fn([i64; 2]) -> f64,
+    factor: &dyn Fn([i64; 2]) -> f64,
 ) -> Vec<Area> {
     let low = half.floor();
     let mut areas = Vec::new();
@@ -125,8 +125,8 @@ pub fn box_areas(
             let other = [at[0] as i64 + by[0], at[1] as i64 + by[1]];
             if sheet.contains(other) {
                 let m = boxes[other[1] as usize * sheet.size[0] + other[0] as usize];
-                let reaches = reaching_share(m.half, half, distance as i64);
-                areas.push((m, part * m.coverage * reaches * share(other)));
+                let reaches = reaching_fraction(m.half, half, distance as i64);
+                areas.push((m, part * m.coverage * reaches * factor(other)));
             }
         }
     }
@@ -135,7 +135,7 @@ pub fn box_areas(
 
 /// The factor for a box of half a side of `found` instead of `half`: how much of the pixel, at
 /// this distance, it contains, of what it should.
-fn reaching_share(found: f64, half: f64, distance: i64) -> f64 {
+fn reaching_fraction(found: f64, half: f64, distance: i64) -> f64 {
     (part_of_box(found, distance) / part_of_box(half, distance).max(1e-6)).min(1.0)
 }
 

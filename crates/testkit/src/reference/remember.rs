@@ -78,7 +78,7 @@ pub struct Pixel {
     /// Pixels that it moves by.
     pub speed: f64,
     /// The fraction of this frame where lines move; 1: there is no memory.
-    pub share: f64,
+    pub blend_factor: f64,
 }
 
 /// What is remembered of a pixel.
@@ -113,7 +113,7 @@ impl Pixel {
         let covered = before(self.nearest, self.past_wide);
         let uncovered = before(self.past_nearest, self.wide);
         let vanished = before(self.past_wide, self.wide);
-        let exists = self.seen && self.share < 1.0;
+        let exists = self.seen && self.blend_factor < 1.0;
         let [frames, missing, unsteady] = if exists { self.counts } else { [0.0; 3] };
         let moves = self.speed > 0.05;
         let unsteady = if moves {
@@ -130,7 +130,14 @@ impl Pixel {
         } else {
             [frames, missing]
         };
-        let frames = f64::min(frames + 1.0, if moves { 1.0 / self.share } else { 128.0 });
+        let frames = f64::min(
+            frames + 1.0,
+            if moves {
+                1.0 / self.blend_factor
+            } else {
+                128.0
+            },
+        );
         let missing = if self.is_missing() {
             missing + 1.0
         } else {
@@ -139,14 +146,14 @@ impl Pixel {
         let ends = covered || vanished || self.wide <= 0.0;
         // In motion, or after two rounds of eight offsets.
         let limited = missing > 16.0 || moves || (steady && ends);
-        let share = (1.0 / frames.max(1.0) + self.speed / 4.0).min(1.0);
+        let blend_factor = (1.0 / frames.max(1.0) + self.speed / 4.0).min(1.0);
         let ink = std::array::from_fn(|k| {
             let kept = if limited {
                 self.past[k].max(self.least[k]).min(self.most[k])
             } else {
                 self.past[k].clamp(0.0, 1.0)
             };
-            kept * (1.0 - share) + self.now[k] * share
+            kept * (1.0 - blend_factor) + self.now[k] * blend_factor
         });
         Memory {
             ink,

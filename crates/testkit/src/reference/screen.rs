@@ -1,4 +1,4 @@
-//! Reference of `effect/screen.wgsl`: coverages of screens. `at`: cells; `period`: pixels.
+//! Reference of `effect/screen.wgsl`: coverages of screens. `at`: cells; `cell_size`: pixels.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -15,9 +15,9 @@ fn to_nearest(x: f64) -> f64 {
 
 /// Discs, from the areas of circles: an edge with a ramp of one pixel has the area of the
 /// circle of radius sqrt(r^2 + 1/12), and a cone if the ramps from all sides meet.
-fn disc_radius(tone: f64, period: f64) -> f64 {
+fn disc_radius(tone: f64, cell_size: f64) -> f64 {
     if tone <= FRAC_PI_4 {
-        let square = tone * period.powi(2) / PI;
+        let square = tone * cell_size.powi(2) / PI;
         return if square >= 1.0 / 3.0 {
             (square - 1.0 / 12.0).sqrt()
         } else {
@@ -26,42 +26,42 @@ fn disc_radius(tone: f64, period: f64) -> f64 {
     }
     let rest = (1.0 - tone) / (1.0 - FRAC_PI_4);
     let root = rest.sqrt();
-    period * (0.5f64.sqrt() - root * (0.2471 - 0.04 * root)) - 0.09 * rest / period.powi(2)
+    cell_size * (0.5f64.sqrt() - root * (0.2471 - 0.04 * root)) - 0.09 * rest / cell_size.powi(2)
 }
 
-pub fn disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
-    let radius = disc_radius(tone, period);
+pub fn disc(at: [f64; 2], tone: f64, cell_size: f64) -> f64 {
+    let radius = disc_radius(tone, cell_size);
     let [x, y] = at.map(|v| to_nearest(v).abs());
     let covers = [(x, y), (1.0 - x, y), (x, 1.0 - y), (1.0 - x, 1.0 - y)]
-        .map(|(x, y)| (radius - period * x.hypot(y) + 0.5).clamp(0.0, 1.0));
+        .map(|(x, y)| (radius - cell_size * x.hypot(y) + 0.5).clamp(0.0, 1.0));
     let largest = covers.into_iter().fold(0.0, f64::max);
     let sum = covers.into_iter().sum::<f64>().min(1.0);
     mix(sum, largest, 0.31 * smoothstep(0.77, 0.8, tone))
 }
 
 /// The disc of the pixel's own cell.
-fn own_disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
+fn own_disc(at: [f64; 2], tone: f64, cell_size: f64) -> f64 {
     let [x, y] = at.map(to_nearest);
-    (disc_radius(tone, period) - period * x.hypot(y) + 0.5).clamp(0.0, 1.0)
+    (disc_radius(tone, cell_size) - cell_size * x.hypot(y) + 0.5).clamp(0.0, 1.0)
 }
 
-fn checker([u, v]: [f64; 2], tone: f64, period: f64) -> f64 {
+fn checker([u, v]: [f64; 2], tone: f64, cell_size: f64) -> f64 {
     let height = 0.5 * ((TAU * u).cos() + (TAU * v).cos());
     let curved = ((0.5 - tone) / 0.11).clamp(-1.0, 1.0);
-    let x = 1.0 - 2.0 * (tone - curved * PI / 12.0 / period.powi(2));
+    let x = 1.0 - 2.0 * (tone - curved * PI / 12.0 / cell_size.powi(2));
     let threshold = x * (0.4 + 0.65 * x.abs() - 0.05 * x * x);
-    let gradient = PI / period * (TAU * u).sin().hypot((TAU * v).sin()).max(0.5);
+    let gradient = PI / cell_size * (TAU * u).sin().hypot((TAU * v).sin()).max(0.5);
     ((height - threshold) / gradient + 0.5).clamp(0.0, 1.0)
 }
 
-pub fn euclidean(at: [f64; 2], tone: f64, period: f64) -> f64 {
-    let middle = checker(at, tone, period);
+pub fn euclidean(at: [f64; 2], tone: f64, cell_size: f64) -> f64 {
+    let middle = checker(at, tone, cell_size);
     if tone <= 0.5 {
         let weight = ((tone - 0.15) / 0.15).clamp(0.0, 1.0);
-        mix(own_disc(at, tone, period), middle, weight)
+        mix(own_disc(at, tone, cell_size), middle, weight)
     } else {
         let weight = ((0.85 - tone) / 0.15).clamp(0.0, 1.0);
-        let hole = own_disc(at.map(|v| v + 0.5), 1.0 - tone, period);
+        let hole = own_disc(at.map(|v| v + 0.5), 1.0 - tone, cell_size);
         mix(1.0 - hole, middle, weight)
     }
 }
@@ -96,11 +96,11 @@ fn shared_area(r: f64, x: [f64; 2], y: [f64; 2]) -> f64 {
 
 /// Diamonds around whole numbers: what a square of the size of a pixel, along the cell, shares
 /// with them. Tones beyond a half leave diamonds of paper between them.
-pub fn diamond(at: [f64; 2], tone: f64, period: f64) -> f64 {
+pub fn diamond(at: [f64; 2], tone: f64, cell_size: f64) -> f64 {
     if tone > 0.5 {
-        return 1.0 - diamond(at.map(|v| v + 0.5), 1.0 - tone, period);
+        return 1.0 - diamond(at.map(|v| v + 0.5), 1.0 - tone, cell_size);
     }
-    let side = 1.0 / period;
+    let side = 1.0 / cell_size;
     let radius = (0.5 * tone).sqrt();
     let first = at.map(f64::floor);
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
@@ -135,7 +135,7 @@ pub fn tinted(tone: f64, tints: u32) -> f64 {
     (x.floor() + smoothstep(0.45, 0.55, x.fract())) / f64::from(tints)
 }
 
-/// Length of the edges of ink of a shape in a cell, in periods.
+/// Length of the edges of ink of a shape in a cell, in cell sizes.
 pub fn edges(shape: ScreenShape, tone: f64) -> f64 {
     let part = tone.min(1.0 - tone);
     match shape {

@@ -65,10 +65,10 @@ impl Drawing {
         }
     }
 
-    fn half_width(&self, share: f64, at: f64, inner: f64, cell: f64) -> f64 {
+    fn half_width(&self, random: f64, at: f64, inner: f64, cell: f64) -> f64 {
         let grown = ((at - inner) / (self.far() - inner).max(1.0)).clamp(0.0, 1.0);
         let widest = 0.5 * f64::from(self.settings.width) * self.scale;
-        let full = widest * (0.2 + 0.8 * share * share);
+        let full = widest * (0.2 + 0.8 * random * random);
         (full * grown).min((1.1 * cell - 0.5).max(0.0))
     }
 

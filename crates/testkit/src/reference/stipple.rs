@@ -62,7 +62,7 @@ impl Dots<'_> {
             .map(|corner| {
                 let node = first + corner;
                 let [i, j] = [node.x as i64, node.y as i64];
-                let share = match (i & 1, j & 1) {
+                let fraction = match (i & 1, j & 1) {
                     (0, 0) => 1.0,
                     (1, 1) => count - 1.0,
                     (1, _) => count - 2.0,
@@ -78,7 +78,7 @@ impl Dots<'_> {
                 let most = (0.866 * apart).min(apart - 0.5 * long) - full.max(0.5 * long);
                 let stray = most.max(0.0) * f64::from(s.wobble) * FRAC_1_SQRT_2 * direction;
                 let away = place - node * fine - stray;
-                let drawn = full * share.clamp(0.0, 1.0).sqrt();
+                let drawn = full * fraction.clamp(0.0, 1.0).sqrt();
                 disc_coverage(away, right, down, drawn)
             })
             .sum();

@@ -28,15 +28,15 @@ fn tone(near: Color, far: Color, detail: f64) -> Rgb {
 /// The picture in tones.
 pub fn toned(s: &ToneRamp, linear: Rgb, change: f64, detail: f64) -> Rgb {
     let between = |near: f32, far: f32| mix(f64::from(far), f64::from(near), detail);
-    let width = between(s.softness, s.far_softness).max(change.max(8.0 / 255.0));
+    let width = between(s.softness, s.distant_softness).max(change.max(8.0 / 255.0));
     let y = lightness(linear);
     let above = |at: f64| smoothstep(at - 0.5 * width, at + 0.5 * width, y);
-    let middle = above(between(s.middle_at, s.far_middle_at));
-    let light = above(between(s.light_at, s.far_light_at));
+    let middle = above(between(s.middle_at, s.distant_middle_at));
+    let light = above(between(s.light_at, s.distant_light_at));
     let tones = [
-        tone(s.dark, s.far_dark, detail),
-        tone(s.middle, s.far_middle, detail),
-        tone(s.light, s.far_light, detail),
+        tone(s.dark, s.distant_dark, detail),
+        tone(s.middle, s.distant_middle, detail),
+        tone(s.light, s.distant_light, detail),
     ];
     let brightest = linear.into_iter().fold(0.0, f64::max);
     std::array::from_fn(|c| {

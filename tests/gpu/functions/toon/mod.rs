@@ -3,7 +3,7 @@
 
 mod atmosphere;
 mod borders;
-mod lamp_shadow;
+mod light_shadow;
 mod light_textures;
 
 /// Numbers that look random.

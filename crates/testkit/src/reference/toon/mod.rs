@@ -2,6 +2,6 @@
 //! its pure functions lie beside this folder.
 
 pub mod ambient;
-pub mod lamp_shadow;
+pub mod light_shadow;
 pub mod reflected;
 pub mod tones;

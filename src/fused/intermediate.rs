@@ -2,12 +2,12 @@
 
 use bevy::{render::render_resource::TextureFormat, shader::ShaderDefVal};
 
-use super::compose::{boxes_of, numbers_of};
+use super::compose::{aux_scalar_of, boxes_of};
 
 /// Linear light, multiplied by the opacity, and the opacity.
-pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+pub(super) const PASS_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// As `box_statistics.wgsl` and `aux_scalar.wgsl` pack them.
-pub(super) const WORDS_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
+pub(super) const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
 /// What a pass draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -77,7 +77,7 @@ impl Drawn {
     pub fn entry_point(self) -> &'static str {
         match self {
             Self::Picture => "stylize",
-            Self::WithScalar(_) => "numbered",
+            Self::WithScalar(_) => "with_scalar",
             Self::Across(_) | Self::Down(_) => "means",
         }
     }
@@ -85,7 +85,9 @@ impl Drawn {
     pub fn shader_defs(self) -> Vec<ShaderDefVal> {
         match self {
             Self::Picture => vec![],
-            Self::WithScalar(effect) => vec!["DRAWS_NUMBERS".into(), numbers_of(effect).into()],
+            Self::WithScalar(effect) => {
+                vec!["DRAWS_AUX_SCALAR".into(), aux_scalar_of(effect).into()]
+            }
             Self::Across(boxes) => boxes.shader_defs(),
             Self::Down(boxes) => {
                 let mut defs = boxes.shader_defs();

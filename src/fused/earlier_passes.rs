@@ -20,29 +20,29 @@ use bevy::{
 };
 
 use super::{
-    inputs::{Before, Inputs},
+    inputs::{Inputs, PreviousPass},
+    intermediate::{Drawn, PACKED_FORMAT, PASS_FORMAT},
     key::StylizeKey,
-    prepare::{FusedRequest, Layer, LayerPass},
-    words::{Drawn, LAYER_FORMAT, WORDS_FORMAT},
+    prepare::{EarlierPassRequest, FusedRequest, TexturePass},
 };
 use crate::gpu::{attachment, texture};
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
-pub(super) struct ViewLayers {
+pub(super) struct PassTextures {
     /// A pass cannot read what it draws to, so more than one pass draw to two in turns.
     pictures: Vec<CachedTexture>,
     /// The same of pictures with numbers.
-    numbered: Vec<CachedTexture>,
+    with_scalar: Vec<CachedTexture>,
     /// Means of rows and of boxes, or nothing.
     means: Vec<CachedTexture>,
 }
 
-impl ViewLayers {
+impl PassTextures {
     /// The texture that a pass draws to, and the next one reads.
     fn picture(&self, pass: usize, key: &StylizeKey) -> Option<&TextureView> {
         let textures = match key.draws {
-            Drawn::WithScalar(_) => &self.numbered,
+            Drawn::WithScalar(_) => &self.with_scalar,
             _ => &self.pictures,
         };
         let at = pass % textures.len().max(1);
@@ -54,51 +54,51 @@ impl ViewLayers {
     }
 }
 
-pub(super) fn prepare_layers(
+pub(super) fn prepare_pass_textures(
     mut commands: Commands,
     views: Query<(Entity, &FusedRequest)>,
-    layered: Query<Entity, With<ViewLayers>>,
+    prepared: Query<Entity, With<PassTextures>>,
     (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
 ) {
     for (view, request) in &views {
         let mut get = |format, count| {
-            let layer = || descriptor(request, format);
             (0..count)
-                .map(|_| textures.get(&device, layer()))
+                .map(|_| textures.get(&device, descriptor(request, format)))
                 .collect::<Vec<_>>()
         };
-        let layers = || request.layers.iter();
+        let passes = || request.earlier.iter();
         // In turns by the number of the pass: two, even if only one of the passes draws to them.
-        let both = |draws: bool| if draws { layers().len().min(2) } else { 0 };
-        let is_numbered = |layer: &Layer| matches!(layer.picture.key.draws, Drawn::WithScalar(_));
-        let pictures = get(LAYER_FORMAT, both(!layers().all(is_numbered)));
-        let numbered = get(WORDS_FORMAT, both(layers().any(is_numbered)));
-        let has_means = layers().any(|layer| layer.means.is_some());
-        let means = get(WORDS_FORMAT, if has_means { 2 } else { 0 });
-        if !request.layers.is_empty() {
-            let layers = ViewLayers {
+        let both = |draws: bool| if draws { passes().len().min(2) } else { 0 };
+        let has_scalar = |pass: &EarlierPassRequest| {
+            matches!(pass.picture.key.draws, Drawn::WithScalar(_))
+        };
+        let pictures = get(PASS_FORMAT, both(!passes().all(has_scalar)));
+        let with_scalar = get(PACKED_FORMAT, both(passes().any(has_scalar)));
+        let has_means = passes().any(|pass| pass.means.is_some());
+        let means = get(PACKED_FORMAT, if has_means { 2 } else { 0 });
+        if !request.earlier.is_empty() {
+            commands.entity(view).insert(PassTextures {
                 pictures,
-                numbered,
+                with_scalar,
                 means,
-            };
-            commands.entity(view).insert(layers);
-        } else if layered.contains(view) {
-            commands.entity(view).remove::<ViewLayers>();
+            });
+        } else if prepared.contains(view) {
+            commands.entity(view).remove::<PassTextures>();
         }
     }
-    for view in &layered {
+    for view in &prepared {
         if !views.contains(view) {
-            commands.entity(view).remove::<ViewLayers>();
+            commands.entity(view).remove::<PassTextures>();
         }
     }
 }
 
 /// A texture of the viewport's size.
 fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
-    let [_, _, width, height] = request.facts.viewport.to_array();
+    let [_, _, width, height] = request.context.viewport.to_array();
     let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
     texture(
-        "comics_layer",
+        "comics_pass",
         (UVec2::new(width, height), 1),
         format,
         usage,
@@ -116,9 +116,9 @@ pub(super) fn described<'a>(
 }
 
 /// The passes before the last one.
-pub(super) struct Layers<'a>(Vec<LayerDraw<'a>>);
+pub(super) struct EarlierPasses<'a>(Vec<EarlierPass<'a>>);
 
-struct LayerDraw<'a> {
+struct EarlierPass<'a> {
     picture: Draw<'a>,
     means: Option<[Draw<'a>; 2]>,
 }
@@ -133,7 +133,7 @@ struct Draw<'a> {
 impl<'a> Draw<'a> {
     fn new(
         cache: &'a PipelineCache,
-        pass: &'a LayerPass,
+        pass: &'a TexturePass,
         texture: Option<&'a TextureView>,
     ) -> Option<Self> {
         Some(Self {
@@ -144,7 +144,12 @@ impl<'a> Draw<'a> {
     }
 
     /// Returns what it has drawn.
-    fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
+    fn record(
+        &self,
+        ctx: &mut RenderContext,
+        inputs: &Inputs,
+        before: &PreviousPass,
+    ) -> &'a TextureView {
         let bind_group = inputs.bind_group(self.key, before);
         let attachments = [Some(attachment(self.texture, LoadOp::default()))];
         let encoder = ctx.command_encoder();
@@ -156,46 +161,46 @@ impl<'a> Draw<'a> {
     }
 }
 
-impl<'a> Layers<'a> {
+impl<'a> EarlierPasses<'a> {
     /// `None` if a pipeline or a texture is not ready in this frame.
     pub fn new(
         cache: &'a PipelineCache,
         request: &'a FusedRequest,
-        textures: Option<&'a ViewLayers>,
+        textures: Option<&'a PassTextures>,
     ) -> Option<Self> {
-        let draws = request.layers.iter().enumerate().map(|(i, layer)| {
+        let draws = request.earlier.iter().enumerate().map(|(i, pass)| {
             let textures = textures?;
-            let means = match &layer.means {
+            let means = match &pass.means {
                 Some([across, down]) => Some([
                     Draw::new(cache, across, textures.means(0))?,
                     Draw::new(cache, down, textures.means(1))?,
                 ]),
                 None => None,
             };
-            let texture = textures.picture(i, &layer.picture.key);
-            let picture = Draw::new(cache, &layer.picture, texture)?;
-            Some(LayerDraw { picture, means })
+            let texture = textures.picture(i, &pass.picture.key);
+            let picture = Draw::new(cache, &pass.picture, texture)?;
+            Some(EarlierPass { picture, means })
         });
         draws.collect::<Option<_>>().map(Self)
     }
 
     /// Returns what they have drawn for the last pass.
-    pub fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Before<'a> {
-        let mut before = Before::default();
-        for layer in &self.0 {
-            let drawn = Some(layer.picture.record(ctx, inputs, &before));
-            before = match layer.picture.key.draws {
-                Drawn::WithScalar(_) => Before {
+    pub fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> PreviousPass<'a> {
+        let mut before = PreviousPass::default();
+        for pass in &self.0 {
+            let drawn = Some(pass.picture.record(ctx, inputs, &before));
+            before = match pass.picture.key.draws {
+                Drawn::WithScalar(_) => PreviousPass {
                     picture: None,
-                    words: drawn,
+                    packed: drawn,
                 },
-                _ => Before {
+                _ => PreviousPass {
                     picture: drawn,
-                    words: None,
+                    packed: None,
                 },
             };
-            for draw in layer.means.iter().flatten() {
-                before.words = Some(draw.record(ctx, inputs, &before));
+            for draw in pass.means.iter().flatten() {
+                before.packed = Some(draw.record(ctx, inputs, &before));
             }
         }
         before

@@ -1,4 +1,4 @@
-//! Reference of `toon/lamp_shadow.wgsl`, as far as it is about directional lights.
+//! Reference of `toon/light_shadow.wgsl`, as far as it is about directional lights.
 
 use bevy::math::{DMat4, DVec2, DVec3};
 

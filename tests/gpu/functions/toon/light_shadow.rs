@@ -2,7 +2,7 @@
 
 use bevy_comics_testkit::{
     device::gpu,
-    reference::toon::lamp_shadow::{Cascade, Receiver, ShadowMap, Sun, hard_shadow},
+    reference::toon::light_shadow::{Cascade, Receiver, ShadowMap, Sun, hard_shadow},
 };
 
 use super::Numbers;
@@ -21,7 +21,7 @@ const FAR: [f32; 2] = [8.0, 24.0];
 type Row = [f32; 13];
 
 /// Every name is that of the shipped WGSL.
-const READ: &str = "#import bevy_comics::toon::lamp_shadow::{shadow_in_cascade, sun_shadow}
+const READ: &str = "#import bevy_comics::toon::light_shadow::{shadow_in_cascade, sun_shadow}
     #import bevy_comics::toon::surface::Surface
     #import bevy_pbr::mesh_view_bindings::lights
     fn v(n: u32) -> vec3<f32> { return vec3(i(n), i(n + 1u), i(n + 2u)); }

@@ -2,7 +2,7 @@
 
 /// What a draw call of the fused pass draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Part {
+pub(crate) enum DrawnArea {
     /// All effects at all pixels.
     #[default]
     Whole,
@@ -16,7 +16,7 @@ pub(crate) enum Part {
     OverlaidTiles,
 }
 
-impl Part {
+impl DrawnArea {
     /// Whether the pass is blended over the picture.
     pub fn is_overlay(self) -> bool {
         matches!(self, Self::Overlay | Self::OverlaidTiles)

@@ -1,8 +1,8 @@
-#define_import_path bevy_comics::toon::lamp_shadow
+#define_import_path bevy_comics::toon::light_shadow
 
 // The shadow maps of lights, read as the engine reads them (`fetch_point_shadow`, `fetch_spot_shadow`,
 // `fetch_directional_shadow`), with the slope of the shadow from the same texels. There are no derivatives:
-// neighbouring pixels may see other lamps, or lie on other surfaces.
+// neighbouring pixels may see other lights, or lie on other surfaces.
 
 #ifdef SLOPED_SHADOWS
 #import bevy_pbr::{
