@@ -42,12 +42,6 @@ fn square(root: vec3<f32>) -> vec3<f32> {
     return root * abs(root);
 }
 
-// The means of one colour with these squares of its luminance.
-fn means_of_color(color: vec3<f32>, square: f32, coverage: f32, half: f32) -> Means {
-    let mean = luminance(color);
-    return Means(mean, square, color.rb - mean, coverage, half);
-}
-
 // A colour from its luminance, and red and blue less that.
 fn color_of(mean: f32, chroma: vec2<f32>) -> vec3<f32> {
     let green = -(0.2126 * chroma.x + 0.0722 * chroma.y) / 0.7152;

@@ -6,7 +6,6 @@ pub(crate) mod format;
 mod layer;
 pub mod presets;
 pub(crate) mod renamed;
-pub(crate) mod rust_code;
 #[cfg(test)]
 mod tests;
 mod transition;

@@ -97,18 +97,6 @@ fn stops_over_pixel(distance_squared: f32, pixel: f32) -> f32 {
     return 2.0 * pixel * inverseSqrt(max(distance_squared, 1e-8)) * 1.442695;
 }
 
-// Light of a point at a distance, in rings. `brightest` is the exposed light at distance 1.
-fn flat_falloff(
-    s: ToonLight,
-    distance_squared: f32,
-    inverse_range_squared: f32,
-    brightest: f32,
-    pixel: f32,
-) -> f32 {
-    let light = smooth_falloff(distance_squared, inverse_range_squared);
-    return rings(s, light, brightest, stops_over_pixel(distance_squared, pixel));
-}
-
 // 1 inside the cone of a spot light, 0 outside: the middle of the penumbra becomes a
 // hard edge. `inside` is 0 at the outer angle and 1 at the inner angle, `width` its
 // change over a pixel.

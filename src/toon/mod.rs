@@ -9,7 +9,6 @@ mod fuzz;
 mod gltf_name;
 mod hatch;
 mod ignored;
-mod light_owner;
 mod material;
 mod name;
 mod proxy;
@@ -39,7 +38,6 @@ use bevy::{
 
 pub use art_map::TonalArtMap;
 pub use detail::{DetailAxis, RampDetail};
-pub use light_owner::LightOwner;
 pub use material::{ToonLight, ToonMaterial};
 pub use name::MaterialName;
 pub use proxy::{ProxyShape, ShadingProxy};

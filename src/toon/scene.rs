@@ -17,6 +17,7 @@ use bevy::{
         reflect::ReflectComponent,
         resource::Resource,
         system::{Commands, Query, Res, ResMut, SystemParam},
+        world::EntityRef,
     },
     pbr::{MeshMaterial3d, StandardMaterial},
     platform::collections::{HashMap, HashSet},
@@ -88,6 +89,22 @@ impl ToonScene {
         self
     }
 
+    /// Where the toon material of a mesh comes from: the entity with the `ToonScene`, the standard
+    /// material that the scene has replaced, and the shading that it has chosen for the mesh, loaded
+    /// or not. `None` if no scene draws the mesh. Edits of the standard material stay; those of the
+    /// toon copy are lost when the scene writes it again.
+    pub fn original<'w>(
+        mesh: EntityRef<'w>,
+    ) -> Option<(
+        Entity,
+        &'w Handle<StandardMaterial>,
+        Option<&'w Handle<ToonShading>>,
+    )> {
+        let original = mesh.get::<Original>()?;
+        let shading = original.shading.as_ref();
+        Some((original.root, &original.material, shading))
+    }
+
     /// The shading of the scene for a name.
     fn shading_of(&self, name: Option<&MaterialName>) -> Option<&Handle<ToonShading>> {
         name.and_then(|name| self.overrides.get(name))
@@ -99,9 +116,9 @@ impl ToonScene {
 /// chosen for it.
 #[derive(Component, PartialEq)]
 pub(super) struct Original {
-    pub(super) material: Handle<StandardMaterial>,
-    pub(super) root: Entity,
-    pub(super) shading: Option<Handle<ToonShading>>,
+    material: Handle<StandardMaterial>,
+    root: Entity,
+    shading: Option<Handle<ToonShading>>,
 }
 
 /// What may have another material than before.
@@ -327,4 +344,4 @@ pub(super) fn apply_shadings(
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;

@@ -7,6 +7,7 @@ use bevy_comics::{
     BlackFlats, ComicStyle, Contours, DepthMap, DepthMapping, Outlines, depth::ReductionMethod,
     effects::ContourOperator, presets,
 };
+use bevy_comics_inspector::rust_code;
 
 use image::{Rgb, RgbImage};
 
@@ -231,7 +232,7 @@ fn styles_as_rust() -> String {
     let mut code = String::from("use bevy::prelude::*;\nuse bevy_comics::{prelude::*, presets};\n");
     let mut checks = String::new();
     let mut add = |function: &str, style: &ComicStyle, check: &str| {
-        let built = style.to_rust();
+        let built = rust_code(style);
         let file = style.to_ron().expect("text");
         writeln!(code, "fn {function}() -> ComicStyle {{\n{built}\n}}").expect("written");
         writeln!(
@@ -293,7 +294,7 @@ fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
     }
 }
 
-/// `ComicStyle::to_rust` writes code that builds the style.
+/// `rust_code` writes code that builds the style.
 #[test]
 #[ignore = "long: compiles and links a crate"]
 fn exported_styles_build_the_same_style() {

@@ -36,6 +36,7 @@ mod objects;
 mod panel;
 mod photo;
 mod presets;
+mod rust_code;
 mod search;
 mod stash;
 pub mod timing;
@@ -79,6 +80,7 @@ use bevy_egui::{EguiPostUpdateSet, egui};
 use bevy_comics::{ComicsPlugin, effect::EffectRegistry};
 use camera::window_size;
 use panel::Panel;
+pub use rust_code::rust_code;
 use timing::PassTimesPlugin;
 
 /// Adds the inspector: a key opens a panel in the primary window.

@@ -9,7 +9,7 @@ use bevy::{
 use super::*;
 
 /// The part of the plugin that shadings and scenes need.
-pub(in crate::toon) fn app() -> App {
+fn app() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()))
         .init_asset::<StandardMaterial>()
@@ -23,7 +23,7 @@ pub(in crate::toon) fn app() -> App {
     app
 }
 
-pub(in crate::toon) fn add<A: Asset>(app: &mut App, asset: A) -> Handle<A> {
+fn add<A: Asset>(app: &mut App, asset: A) -> Handle<A> {
     app.world_mut().resource_mut::<Assets<A>>().add(asset)
 }
 

@@ -4,7 +4,11 @@
 use bevy::{
     asset::{Assets, Handle},
     color::Color,
-    ecs::{entity::Entity, world::World},
+    ecs::{
+        entity::Entity,
+        query::With,
+        world::{EntityRef, World},
+    },
     pbr::{MeshMaterial3d, StandardMaterial},
     reflect::Reflect,
 };
@@ -20,7 +24,7 @@ use super::{
     Objects, edits,
     steps::with_material,
 };
-use bevy_comics::{ToonMaterial, effect::FieldRange, toon::LightOwner};
+use bevy_comics::{ToonMaterial, ToonScene, effect::FieldRange};
 
 /// The path of the material in the panel.
 const PATH: &str = "material";
@@ -79,10 +83,10 @@ enum Place {
 
 impl Place {
     fn of(world: &World, mesh: Entity) -> Option<Self> {
-        if let Some(original) = LightOwner::original_material(world, mesh) {
+        let mesh = world.get_entity(mesh).ok()?;
+        if let Some((_, original, _)) = ToonScene::original(mesh) {
             return Some(Self::Standard(original.clone()));
         }
-        let mesh = world.get_entity(mesh).ok()?;
         if let Some(material) = mesh.get::<MeshMaterial3d<ToonMaterial>>() {
             return Some(Self::Toon(material.0.clone()));
         }
@@ -144,13 +148,11 @@ impl Place {
 
 /// The number of meshes with a standard material, or with a scene's copy of it.
 fn with_original(world: &mut World, material: &Handle<StandardMaterial>) -> usize {
-    let converted: Vec<Entity> = world
-        .query_filtered::<Entity, bevy::ecs::query::With<MeshMaterial3d<ToonMaterial>>>()
+    let copies = world
+        .query_filtered::<EntityRef, With<MeshMaterial3d<ToonMaterial>>>()
         .iter(world)
-        .collect();
-    let copies = converted
-        .iter()
-        .filter(|mesh| LightOwner::original_material(world, **mesh) == Some(material))
+        .filter_map(ToonScene::original)
+        .filter(|(_, original, _)| *original == material)
         .count();
     copies + with_material(world, material).len()
 }

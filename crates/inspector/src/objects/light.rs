@@ -14,12 +14,14 @@ use super::{
         history::{Exchange, Subject},
         note,
     },
-    Objects, edits, meshes, name_of,
+    Objects, edits,
+    light_owner::LightOwner,
+    meshes, name_of,
     steps::{LightStep, MaterialStep, subject_of, with_material},
 };
 use bevy_comics::{
     ToonLight,
-    toon::{LightOwner, Ramp, RampStop},
+    toon::{Ramp, RampStop},
 };
 
 /// The path of the lighting in the panel.

@@ -5,6 +5,8 @@ mod base;
 mod highlight;
 #[cfg(feature = "toon")]
 mod light;
+#[cfg(feature = "toon")]
+mod light_owner;
 #[cfg(feature = "objects")]
 mod parts;
 mod pick;

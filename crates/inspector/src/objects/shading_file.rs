@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use bevy_egui::egui::{TextEdit, Ui};
 
-use super::super::{
-    Widgets,
-    fields::{button_with_tooltip, error},
-    files::{path_of, write},
-    note,
+use super::{
+    super::{
+        Widgets,
+        fields::{button_with_tooltip, error},
+        files::{path_of, write},
+        note,
+    },
+    light_owner::LightOwner,
 };
-use bevy_comics::{
-    ToonLight,
-    toon::{LightOwner, ToonShading},
-};
+use bevy_comics::{ToonLight, toon::ToonShading};
 
 const SUFFIX: &str = ".toon.ron";
 

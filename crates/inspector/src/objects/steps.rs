@@ -6,8 +6,11 @@ use bevy::{
     pbr::{Material, MeshMaterial3d, StandardMaterial},
 };
 
-use super::super::history::{Exchange, Subject};
-use bevy_comics::{ToonLight, ToonMaterial, ToonScene, toon::LightOwner};
+use super::{
+    super::history::{Exchange, Subject},
+    light_owner::LightOwner,
+};
+use bevy_comics::{ToonLight, ToonMaterial, ToonScene};
 
 /// The lighting that was set in a place.
 pub struct LightStep {

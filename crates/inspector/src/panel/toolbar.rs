@@ -10,7 +10,7 @@ use super::{
         files::on_camera,
         history::{Step, Way},
         memory::Tab,
-        note,
+        note, rust_code,
     },
     Message, Panel, put,
 };
@@ -151,7 +151,7 @@ impl Panel {
         );
         if button_with_tooltip(ui, widgets, rust, true) {
             let done = "The style is on the clipboard, as Rust code.";
-            self.message = self.copied(style.to_rust(), done);
+            self.message = self.copied(rust_code(style), done);
         }
         let paste = (
             "paste",

@@ -4,16 +4,16 @@ use bevy::{
     color::{Color, ColorToComponents, Srgba},
     reflect::{
         PartialReflect, ReflectRef, TypeInfo, TypeRegistry,
-        enums::{Enum, EnumInfo, VariantType},
+        enums::{Enum, VariantType},
         std_traits::ReflectDefault,
         structs::Struct,
     },
 };
 
-use super::ComicStyle;
-use crate::{depth::DepthMap, effect::AnyEffect};
+use super::fields::is_option;
+use bevy_comics::{ComicStyle, DepthMap, effect::AnyEffect};
 
-/// The types of [`crate::prelude`] that a style can hold.
+/// The types of [`bevy_comics::prelude`] that a style can hold.
 const PRELUDE: &[&str] = &[
     "Abstraction",
     "BlackFlats",
@@ -37,58 +37,58 @@ const PRELUDE: &[&str] = &[
     "Vignette",
 ];
 
-impl ComicStyle {
-    /// A Rust expression that builds this style, to compile a tuned style into a
-    /// game. Fields that have their default value are left out.
-    ///
-    /// The expression compiles where `bevy::prelude::*` and
-    /// `bevy_comics::prelude::*` are imported. Types of other crates are written
-    /// by their reflected type path, and all their fields have to be visible
-    /// where the code is put. A value that reflection cannot read, such as a
-    /// map, is replaced by `Default::default()` and a comment.
-    ///
-    /// ```
-    /// # use bevy_comics::{ComicStyle, Contours};
-    /// let style = ComicStyle::new().with(Contours { width: 3.0, ..Default::default() });
-    /// let code = "\
-    /// ComicStyle::new().with(Contours {
-    ///     width: 3.0,
-    ///     ..default()
-    /// })";
-    /// assert_eq!(style.to_rust(), code);
-    /// ```
-    pub fn to_rust(&self) -> String {
-        let mut types = TypeRegistry::default();
-        types.register::<DepthMap>();
-        for effect in self.effects() {
-            (effect.effect_type().register)(&mut types);
-        }
-        let writer = Writer { types };
-        let mut fields = Vec::new();
-        if !self.name.is_empty() {
-            fields.push(format!("name: {:?}.into(),", self.name));
-        }
-        if !self.off.is_empty() {
-            // By name: the types of the effects are not known here.
-            fields.push(format!("off: {:?}.into(),", Vec::from_iter(&self.off)));
-        }
-        let mut code = String::from("ComicStyle::new()");
-        if !fields.is_empty() {
-            fields.push(format!("..{code}"));
-            code = format!("ComicStyle {}", block(&fields));
-        }
-        let mut calls = Vec::new();
-        if self.partial {
-            calls.push(".partial()".to_owned());
-        }
-        if let Some(map) = &self.depth_map {
-            calls.push(format!(".with_depth_map({})", writer.value(map)));
-        }
-        for effect in self.effects() {
-            calls.push(format!(".with({})", writer.effect(effect)));
-        }
-        code + &chain(&calls, fields.is_empty())
+/// A Rust expression that builds a style, to compile a tuned style into a game.
+/// Fields that have their default value are left out.
+///
+/// The expression compiles where `bevy::prelude::*` and
+/// `bevy_comics::prelude::*` are imported. Types of other crates are written
+/// by their reflected type path, and all their fields have to be visible
+/// where the code is put. A value that reflection cannot read, such as a
+/// map, is replaced by `Default::default()` and a comment.
+///
+/// ```
+/// # use bevy_comics::{ComicStyle, Contours};
+/// use bevy_comics_inspector::rust_code;
+///
+/// let style = ComicStyle::new().with(Contours { width: 3.0, ..Default::default() });
+/// let code = "\
+/// ComicStyle::new().with(Contours {
+///     width: 3.0,
+///     ..default()
+/// })";
+/// assert_eq!(rust_code(&style), code);
+/// ```
+pub fn rust_code(style: &ComicStyle) -> String {
+    let mut types = TypeRegistry::default();
+    types.register::<DepthMap>();
+    for effect in style.effects() {
+        (effect.effect_type().register)(&mut types);
     }
+    let writer = Writer { types };
+    let mut fields = Vec::new();
+    if !style.name.is_empty() {
+        fields.push(format!("name: {:?}.into(),", style.name));
+    }
+    if !style.off.is_empty() {
+        // By name: the types of the effects are not known here.
+        fields.push(format!("off: {:?}.into(),", Vec::from_iter(&style.off)));
+    }
+    let mut code = String::from("ComicStyle::new()");
+    if !fields.is_empty() {
+        fields.push(format!("..{code}"));
+        code = format!("ComicStyle {}", block(&fields));
+    }
+    let mut calls = Vec::new();
+    if style.partial {
+        calls.push(".partial()".to_owned());
+    }
+    if let Some(map) = &style.depth_map {
+        calls.push(format!(".with_depth_map({})", writer.value(map)));
+    }
+    for effect in style.effects() {
+        calls.push(format!(".with({})", writer.effect(effect)));
+    }
+    code + &chain(&calls, fields.is_empty())
 }
 
 /// The calls after the start of an expression, laid out as rustfmt does: one
@@ -241,12 +241,6 @@ impl Writer {
     }
 }
 
-/// Whether an enum is the standard library's `Option`.
-pub(crate) fn is_option(info: &EnumInfo) -> bool {
-    let path = info.type_path_table();
-    path.module_path() == Some("core::option") && path.ident() == Some("Option")
-}
-
 /// The code of a value that is written as a literal or by a constructor.
 fn literal(value: &dyn PartialReflect) -> Option<String> {
     macro_rules! debug {
@@ -324,7 +318,7 @@ fn codes(color: Srgba) -> Option<[u8; 3]> {
     (Srgba::rgb_u8(red, green, blue) == color).then_some(codes)
 }
 
-/// The path by which code outside of this crate names a value's type.
+/// The path by which a game names a value's type.
 fn path_of(value: &dyn PartialReflect) -> String {
     let path = value.reflect_type_path();
     // Rust infers the parameters of a generic type.
@@ -347,5 +341,4 @@ fn path_of(value: &dyn PartialReflect) -> String {
 }
 
 #[cfg(test)]
-#[path = "rust_code/tests.rs"]
 mod tests;

@@ -1,7 +1,7 @@
 use bevy::{math::Vec2, reflect::Reflect};
 
 use super::*;
-use crate::{
+use bevy_comics::{
     BlackFlats, Contours, DepthMapping, Outlines, ToneBands,
     depth::{RangeSmoothing, ReductionMethod},
     effects::ContourOperator,
@@ -16,7 +16,7 @@ fn code(value: &dyn PartialReflect) -> String {
     Writer { types }.value(value)
 }
 
-/// As a game outside of this crate might define it.
+/// As a game might define it.
 #[derive(Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Default)]
 #[type_path = "my_game::rain"]
@@ -184,7 +184,7 @@ fn only_what_differs_from_the_default_is_written() {
         ..Outlines::default()
     });
     assert_eq!(
-        style.to_rust(),
+        rust_code(&style),
         r#"ComicStyle {
     name: "Old \"photograph\"".into(),
     ..ComicStyle::new()
@@ -208,18 +208,18 @@ fn only_what_differs_from_the_default_is_written() {
     ..default()
 })"#
     );
-    assert_eq!(ComicStyle::new().to_rust(), "ComicStyle::new()");
+    assert_eq!(rust_code(&ComicStyle::new()), "ComicStyle::new()");
     let partial = ComicStyle::new().partial();
-    assert_eq!(partial.to_rust(), "ComicStyle::new().partial()");
+    assert_eq!(rust_code(&partial), "ComicStyle::new().partial()");
     assert_eq!(
-        partial.turn_off::<Contours>().to_rust(),
+        rust_code(&partial.turn_off::<Contours>()),
         "ComicStyle {\n    off: [\"contours\"].into(),\n    ..ComicStyle::new()\n}\n.partial()"
     );
     let two = ComicStyle::new()
         .with(ToneBands::default())
         .with(Contours::default());
     assert_eq!(
-        two.to_rust(),
+        rust_code(&two),
         "ComicStyle::new()\n    .with(ToneBands::default())\n    .with(Contours::default())"
     );
     assert_eq!(

@@ -1,12 +1,42 @@
 //! An edit in a place is what the mesh is drawn with, and stays.
 
-use bevy::{app::App, ecs::hierarchy::ChildOf};
+use bevy::{
+    MinimalPlugins,
+    app::App,
+    asset::{Asset, AssetApp, AssetPlugin},
+    ecs::hierarchy::ChildOf,
+    image::ImagePlugin,
+    mesh::MeshPlugin,
+    pbr::{PbrPlugin, StandardMaterial},
+    shader::Shader,
+};
 
 use super::*;
-use crate::toon::{
-    MaterialName,
-    scene::tests::{add, app},
-};
+use bevy_comics::{ComicsPlugin, toon::MaterialName};
+
+/// An app with materials, without a renderer.
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        AssetPlugin::default(),
+        ImagePlugin::default(),
+        MeshPlugin,
+    ))
+    .init_asset::<Shader>()
+    .add_plugins((
+        PbrPlugin {
+            gltf_enable_standard_materials: false,
+            ..PbrPlugin::default()
+        },
+        ComicsPlugin,
+    ));
+    app
+}
+
+fn add<A: Asset>(app: &mut App, asset: A) -> Handle<A> {
+    app.world_mut().resource_mut::<Assets<A>>().add(asset)
+}
 
 fn lit(highlight: f32) -> ToonLight {
     ToonLight {

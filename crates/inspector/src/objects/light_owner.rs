@@ -3,12 +3,12 @@
 use bevy::{
     asset::{Assets, Handle},
     ecs::{entity::Entity, query::With, world::World},
-    pbr::{MeshMaterial3d, StandardMaterial},
+    pbr::MeshMaterial3d,
 };
 
-use super::{ToonLight, ToonMaterial, ToonScene, ToonShading, ToonShadingHandle, scene::Original};
+use bevy_comics::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle, toon::ToonShading};
 
-/// What sets the lighting of a mesh last, so that an edit of it stays: for editors.
+/// What sets the lighting of a mesh last, so that an edit of it stays.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightOwner {
     /// A shading: that of the mesh, of the name of its material, or of its scene.
@@ -24,7 +24,7 @@ impl LightOwner {
     pub fn of(world: &World, mesh: Entity) -> Option<Self> {
         let mesh = world.get_entity(mesh).ok()?;
         let material = &mesh.get::<MeshMaterial3d<ToonMaterial>>()?.0;
-        let Some(original) = mesh.get::<Original>() else {
+        let Some((root, _, chosen)) = ToonScene::original(mesh) else {
             let own = mesh.get::<ToonShadingHandle>().map(|own| &own.0);
             if let Some(shading) = own.filter(|shading| is_loaded(world, shading)) {
                 return Some(Self::Shading(shading.clone()));
@@ -34,14 +34,12 @@ impl LightOwner {
                 .contains(material)
                 .then(|| Self::Material(material.clone()));
         };
-        let scene = world.get::<ToonScene>(original.root)?;
-        let shading = [original.shading.as_ref(), scene.shading.as_ref()]
+        let scene = world.get::<ToonScene>(root)?;
+        let shading = [chosen, scene.shading.as_ref()]
             .into_iter()
             .flatten()
             .find(|shading| is_loaded(world, shading));
-        Some(shading.map_or(Self::Scene(original.root), |shading| {
-            Self::Shading(shading.clone())
-        }))
+        Some(shading.cloned().map_or(Self::Scene(root), Self::Shading))
     }
 
     /// The lighting; `None` if the place is gone.
@@ -94,11 +92,6 @@ impl LightOwner {
                 (material.map(|mut material| material.extension = light)).is_some()
             }
         }
-    }
-
-    /// The standard material that a [`ToonScene`] has replaced on a mesh.
-    pub fn original_material(world: &World, mesh: Entity) -> Option<&Handle<StandardMaterial>> {
-        Some(&world.get::<Original>(mesh)?.material)
     }
 
     /// The number of meshes whose lighting is set here.
