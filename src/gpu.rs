@@ -10,10 +10,11 @@ use bevy::{
     math::UVec2,
     render::{
         render_resource::{
-            BindGroup, BindGroupEntry, BindingResource, Buffer, BufferDescriptor, BufferUsages,
-            CommandEncoder, ComputePassDescriptor, ComputePipeline, LoadOp, Operations,
-            RenderPassColorAttachment, StoreOp, TextureDescriptor, TextureDimension, TextureFormat,
-            TextureUsages, TextureView,
+            BindGroup, BindGroupEntry, BindGroupLayoutEntryBuilder, BindingResource, Buffer,
+            BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePipeline,
+            LoadOp, Operations, RenderPassColorAttachment, StoreOp, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
+            binding_types::{texture_2d, texture_2d_multisampled},
         },
         renderer::RenderDevice,
     },
@@ -23,6 +24,21 @@ use bevy::{
 /// An entry of a bind group.
 pub(crate) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
+}
+
+/// The type of textures that are read without a filter.
+pub(crate) const UNFILTERABLE: TextureSampleType = TextureSampleType::Float { filterable: false };
+
+/// A layout entry of a texture.
+pub(crate) fn sampled(
+    multisampled: bool,
+    sample_type: TextureSampleType,
+) -> BindGroupLayoutEntryBuilder {
+    if multisampled {
+        texture_2d_multisampled(sample_type)
+    } else {
+        texture_2d(sample_type)
+    }
 }
 
 /// A new buffer of `size` bytes.

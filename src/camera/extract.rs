@@ -17,13 +17,15 @@ use super::{CameraPlan, fog::Fogs, light::Lights};
 #[cfg(feature = "objects")]
 use crate::{
     composite::BeyondPrepass,
-    objects::{BackdropBoxes, Backdrops, FadingMeshes, LevelPlaces, Levels, nearest_backdrop},
+    objects::{
+        BackdropBoxes, Backdrops, DepthWrites, FadingMeshes, LevelPlaces, Levels, nearest_backdrop,
+    },
 };
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::EffectTarget,
     fused::{Plan, ViewPlan},
-    objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
+    objects::{DepthWanted, IdsWanted, ObjectStyles},
     origin::WorldOrigin,
 };
 
@@ -43,9 +45,8 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, writes, lights, fogs, places, origin): (
+    (objects, lights, fogs, places, origin): (
         Extract<Res<ObjectStyles>>,
-        Extract<Res<DepthWrites>>,
         Extract<Lights>,
         Extract<Fogs>,
         Extract<Query<&GlobalTransform>>,
@@ -55,7 +56,8 @@ pub(super) fn extract_views(
         Extract<Res<Backdrops>>,
         Extract<BackdropBoxes>,
     ),
-    #[cfg(feature = "objects")] (levels, level_places): (
+    #[cfg(feature = "objects")] (writes, levels, level_places): (
+        Extract<Res<DepthWrites>>,
         Extract<Res<Levels>>,
         Extract<LevelPlaces>,
     ),
@@ -80,7 +82,10 @@ pub(super) fn extract_views(
             places.get(entity).ok(),
         );
         // For as long as a mesh may fade: its coming and going would queue all meshes anew.
-        let writes = asked.plan.fades || !writes.cutoffs.is_empty();
+        #[cfg(feature = "objects")]
+        let writes = asked.plan.fades || !writes.0.is_empty();
+        #[cfg(not(feature = "objects"))]
+        let writes = false;
         want_objects(&mut view, (entity, &asked.plan), writes);
         view.insert(ViewPlan {
             camera: entity,

@@ -6,10 +6,8 @@ use bevy::{
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, CommandEncoder,
         ComputePipeline, ComputePipelineDescriptor, IntoBinding, ShaderStages,
-        SpecializedComputePipeline, TextureSampleType, TextureView,
-        binding_types::{
-            storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
-        },
+        SpecializedComputePipeline, TextureView,
+        binding_types::{storage_buffer_sized, uniform_buffer},
     },
     shader::Shader,
 };
@@ -20,7 +18,7 @@ use super::{
 };
 use crate::{
     bind_groups::Binder,
-    gpu::{compute_pass, definitions, entry},
+    gpu::{UNFILTERABLE, compute_pass, definitions, entry, sampled},
     samples,
 };
 
@@ -78,16 +76,10 @@ impl MiddlePipeline {
     }
 
     fn layout(samples: u32) -> BindGroupLayoutDescriptor {
-        let unfilterable = TextureSampleType::Float { filterable: false };
-        let depth = if samples > 1 {
-            texture_2d_multisampled(unfilterable)
-        } else {
-            texture_2d(unfilterable)
-        };
         let entries = BindGroupLayoutEntries::sequential(
             ShaderStages::COMPUTE,
             (
-                depth,
+                sampled(samples > 1, UNFILTERABLE),
                 uniform_buffer::<RangeView>(true),
                 uniform_buffer::<SmoothingUniform>(true),
                 storage_buffer_sized(false, None),

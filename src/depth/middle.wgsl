@@ -4,7 +4,7 @@
 // invocation per view and frame; its state stays on the GPU.
 
 #import bevy_comics::depth::level::{BEGIN, RESET, Smoothing, bits_of, level_of}
-#import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
+#import bevy_comics::depth::raw::{RangeView, raw_depth_key}
 
 // Places along a side of the square, and their distance as a fraction of the view's height.
 const SIDE: u32 = 5u;
@@ -15,12 +15,6 @@ const SECONDS: f32 = 0.15;
 
 // A level this close to its goal is set to it.
 const SETTLED: f32 = 0.00025;
-
-// As in range.wgsl.
-struct RangeView {
-    rect: vec4<u32>,
-    raw: RawDepth,
-}
 
 struct VisibleRange {
     keys: vec4<u32>,

@@ -12,7 +12,7 @@ use bevy::{
             RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
             TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureSampleType,
             TextureUsages, TextureView,
-            binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
+            binding_types::{texture_2d, uniform_buffer},
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
@@ -23,7 +23,7 @@ use bevy::{
 use super::range::RangeView;
 use crate::{
     bind_groups::Binder,
-    gpu::{attachment, definitions, texture},
+    gpu::{UNFILTERABLE, attachment, definitions, sampled, texture},
     samples,
 };
 
@@ -44,12 +44,7 @@ impl PingPongPipeline {
     }
 
     fn first_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
-        let unfilterable = TextureSampleType::Float { filterable: false };
-        let depth = if multisampled {
-            texture_2d_multisampled(unfilterable)
-        } else {
-            texture_2d(unfilterable)
-        };
+        let depth = sampled(multisampled, UNFILTERABLE);
         BindGroupLayoutDescriptor::new(
             "comics_ping_pong_first",
             &BindGroupLayoutEntries::sequential(

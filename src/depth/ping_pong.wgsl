@@ -6,12 +6,7 @@
 // texture of (2, 1). An odd number is rounded up: the last row or column pair is then
 // read twice, which does not change the maximum. T0 is the depth texture.
 
-#import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
-
-struct PingPongView {
-    rect: vec4<u32>,
-    raw: RawDepth,
-}
+#import bevy_comics::depth::raw::{RangeView, raw_depth_key}
 
 #ifdef FIRST
 #ifdef MULTISAMPLED
@@ -19,7 +14,7 @@ struct PingPongView {
 #else
 @group(0) @binding(0) var depth_texture: texture_2d<f32>;
 #endif
-@group(0) @binding(1) var<uniform> view: PingPongView;
+@group(0) @binding(1) var<uniform> view: RangeView;
 #else
 @group(0) @binding(0) var keys: texture_2d<u32>;
 #endif

@@ -8,10 +8,8 @@ use bevy::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, ComputePipelineDescriptor, Sampler,
             SamplerBindingType, SamplerDescriptor, ShaderStages, ShaderType,
-            SpecializedComputePipeline, TextureSampleType, WgpuFeatures,
-            binding_types::{
-                sampler, storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
-            },
+            SpecializedComputePipeline, WgpuFeatures,
+            binding_types::{sampler, storage_buffer_sized, uniform_buffer},
         },
         renderer::{RenderAdapterInfo, RenderDevice},
     },
@@ -20,9 +18,12 @@ use bevy::{
 use wgpu_types::DeviceType;
 
 use super::{RawDepth, ReductionMethod};
-use crate::{gpu::definitions, samples};
+use crate::{
+    gpu::{UNFILTERABLE, definitions, sampled},
+    samples,
+};
 
-/// `RangeView` of `range.wgsl` and `PingPongView` of `ping_pong.wgsl`.
+/// `RangeView` of `raw.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug)]
 pub(crate) struct RangeView {
     pub rect: UVec4,
@@ -103,17 +104,11 @@ impl RangePipeline {
     }
 
     pub fn layout(key: RangeKey) -> BindGroupLayoutDescriptor {
-        let unfilterable = TextureSampleType::Float { filterable: false };
-        let depth = if key.samples > 1 {
-            texture_2d_multisampled(unfilterable)
-        } else {
-            texture_2d(unfilterable)
-        };
         let compute = ShaderStages::COMPUTE;
         let mut entries = BindGroupLayoutEntries::sequential(
             compute,
             (
-                depth,
+                sampled(key.samples > 1, UNFILTERABLE),
                 uniform_buffer::<RangeView>(true),
                 storage_buffer_sized(false, None),
             ),

@@ -6,16 +6,10 @@
 // depend on the order of the invocations. Both keys are maxima: of the bits (nearest)
 // and of 0 - bits (farthest). A buffer of zeros means "no geometry".
 
-#import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
+#import bevy_comics::depth::raw::{RangeView, raw_depth_key}
 #ifdef HISTOGRAM
 #import bevy_comics::depth::histogram::{DepthWindow, depth_window, octave_bin, window_bin}
 #endif
-
-struct RangeView {
-    // Origin and size of the viewport: x, y, width, height in pixels of the depth texture.
-    rect: vec4<u32>,
-    raw: RawDepth,
-}
 
 struct RangeKeys {
     near: atomic<u32>,

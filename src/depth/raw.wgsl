@@ -15,6 +15,13 @@ struct RawDepth {
     sky: f32,
 }
 
+// What a search for the visible range reads of a view.
+struct RangeView {
+    // Origin and size of the viewport: x, y, width, height in pixels of the depth texture.
+    rect: vec4<u32>,
+    raw: RawDepth,
+}
+
 #ifdef OBLIQUE
 // With an oblique near plane, raw depth does not order pixels by distance. The
 // reciprocal of the view depth z does, and like raw depth it is affine over a plane

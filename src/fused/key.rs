@@ -9,7 +9,7 @@ use bevy::{
     render::render_resource::{
         BindGroupLayoutDescriptor, SamplerBindingType, ShaderStages, TextureFormat,
         TextureSampleType,
-        binding_types::{sampler, texture_2d, texture_2d_multisampled, uniform_buffer_sized},
+        binding_types::{sampler, texture_2d, uniform_buffer_sized},
     },
     shader::ShaderDefVal,
 };
@@ -24,6 +24,7 @@ use super::{
 use crate::{
     composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},
     depth::view::ViewUniform,
+    gpu::{UNFILTERABLE, sampled},
     lines::{Outlines, ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_depths_entry, object_styles_entry},
     samples,
@@ -409,19 +410,11 @@ impl StylizeKey {
     }
 
     pub fn layout(&self) -> BindGroupLayoutDescriptor {
-        let unfilterable = TextureSampleType::Float { filterable: false };
-        let prepass = |binding| {
-            let texture = if self.samples > 1 {
-                texture_2d_multisampled(unfilterable)
-            } else {
-                texture_2d(unfilterable)
-            };
-            texture.build(binding, ShaderStages::FRAGMENT)
-        };
         let fragment = ShaderStages::FRAGMENT;
+        let prepass = |binding| sampled(self.samples > 1, UNFILTERABLE).build(binding, fragment);
         let mut entries = vec![uniform_buffer_sized(false, None).build(1, fragment)];
         if !self.area.is_overlay() {
-            entries.push(texture_2d(unfilterable).build(0, fragment));
+            entries.push(texture_2d(UNFILTERABLE).build(0, fragment));
         }
         let picture = texture_2d(TextureSampleType::Float { filterable: true });
         let between = sampler(SamplerBindingType::Filtering);

@@ -327,44 +327,26 @@ impl Plan {
     /// The inputs that the fused pass reads.
     pub fn needs(&self) -> Needs {
         let effects = self.drawn().map(AnyEffect::any_needs);
-        let needs = effects.fold(Needs::empty(), |all, one| all | one);
-        let needs = if needs.contains(Needs::LINES_ANYWHERE) {
-            needs | Needs::LINES
-        } else {
-            needs
-        };
-        let needs = if self.anchored {
-            needs
-        } else {
-            needs - Needs::OBJECT_ANCHORS
-        };
-        let needs = if self.has_origin {
-            needs
-        } else {
-            needs - Needs::WORLD_ORIGIN
-        };
-        let needs = if self.has_ids() {
-            needs
-        } else {
-            needs - Needs::OBJECT_DEPTHS
-        };
-        let needs = if self.lacks.compute_shaders {
-            needs - Needs::MIDDLE_DEPTH
-        } else {
-            needs
-        };
-        let of_objects = Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS;
-        let needs = if self.unstyled || needs.intersects(of_objects) {
-            needs | Needs::IDS
-        } else {
-            needs
-        };
-        let mask = if self.draws() {
-            self.mask_needs()
-        } else {
-            Needs::empty()
-        };
-        needs | mask | self.view.map_or(Needs::empty(), DebugView::needs)
+        let mut needs = effects.fold(Needs::empty(), |all, one| all | one);
+        if needs.contains(Needs::LINES_ANYWHERE) {
+            needs |= Needs::LINES;
+        }
+        let available = [
+            (Needs::OBJECT_ANCHORS, self.anchored),
+            (Needs::WORLD_ORIGIN, self.has_origin),
+            (Needs::OBJECT_DEPTHS, self.has_ids()),
+            (Needs::MIDDLE_DEPTH, !self.lacks.compute_shaders),
+        ];
+        for (need, _) in available.into_iter().filter(|(_, is_there)| !is_there) {
+            needs.remove(need);
+        }
+        if self.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
+            needs |= Needs::IDS;
+        }
+        if self.draws() {
+            needs |= self.mask_needs();
+        }
+        needs | self.view.map_or(Needs::empty(), DebugView::needs)
     }
 
     /// Whether effects change only some pixels.

@@ -2,7 +2,7 @@
 
 use bevy::{
     math::{Vec2, Vec3},
-    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Mesh, PrimitiveTopology, VertexAttributeValues},
 };
 
 /// A point of a surface, in the space of its mesh.
@@ -47,8 +47,7 @@ impl Faces {
         };
         let corner = |k: usize| places.get(k).copied().map(Vec3::from);
         let order: Vec<usize> = match mesh.try_indices_option().ok()? {
-            Some(Indices::U16(list)) => list.iter().map(|k| usize::from(*k)).collect(),
-            Some(Indices::U32(list)) => list.iter().map(|k| *k as usize).collect(),
+            Some(list) => list.iter().collect(),
             None => (0..places.len()).collect(),
         };
         let mut faces = Self {

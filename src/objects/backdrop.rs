@@ -10,7 +10,6 @@ use bevy::{
         entity::Entity,
         query::With,
         reflect::ReflectComponent,
-        resource::Resource,
         system::{Query, Res, ResMut},
     },
     log::warn_once,
@@ -20,18 +19,13 @@ use bevy::{
     pbr::{PreparedMaterial, RenderMaterialInstances},
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        erased_render_asset::ErasedRenderAssets,
-        render_phase::ViewBinnedRenderPhases,
-        sync_world::{MainEntity, MainEntityHashSet},
+        erased_render_asset::ErasedRenderAssets, render_phase::ViewBinnedRenderPhases,
+        sync_world::MainEntity,
     },
     transform::components::GlobalTransform,
 };
 
-use super::{
-    changes::Follow,
-    inherit::{Inherit, Inherited, watch},
-    shared::Shared,
-};
+use super::inherit::{Inherited, Values, register};
 
 /// Leaves this mesh out of the depth prepass, so that effects treat its pixels as sky: for sky domes, clouds and
 /// painted distances.
@@ -55,41 +49,17 @@ impl Default for Backdrop {
     }
 }
 
-impl Inherit for Backdrop {
-    fn is_inherited(&self) -> bool {
-        self.inherit
-    }
-}
-
-/// The meshes of backdrops. Both worlds have a copy.
-#[derive(Resource, Default)]
-pub(crate) struct Backdrops(Shared<()>);
-
-impl Backdrops {
-    pub fn contains(&self, mesh: Entity) -> bool {
-        self.0.get(mesh).is_some()
-    }
-}
-
-impl Follow for Backdrops {
-    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
-        self.0.follow(&main.0, changed);
-    }
-}
+/// The meshes of backdrops.
+pub(crate) type Backdrops = Values<Backdrop, ()>;
 
 fn find_backdrops(
     mut marked: Inherited<Backdrop>,
     mut meshes: Query<&mut Mesh3d>,
     mut backdrops: ResMut<Backdrops>,
 ) {
-    let changed = marked.update();
-    backdrops.0.begin();
-    for entity in changed {
-        let is_backdrop = marked.of(entity).is_some();
-        let was_other = backdrops.0.set(entity, is_backdrop.then_some(()));
+    for entity in backdrops.update(&mut marked, |_| ()) {
         // The engine then puts it into the prepass again.
-        if was_other
-            && !is_backdrop
+        if !backdrops.0.contains(entity)
             && let Ok(mut mesh) = meshes.get_mut(entity)
         {
             mesh.set_changed();
@@ -182,8 +152,7 @@ fn nearest_corner(aabb: &Aabb, at: &GlobalTransform, eye: &GlobalTransform) -> f
 }
 
 pub(super) fn build(app: &mut App) {
-    watch::<Backdrop>(app);
-    app.register_type::<Backdrop>()
-        .init_resource::<Backdrops>()
+    register::<Backdrop>(app);
+    app.init_resource::<Backdrops>()
         .add_systems(PostUpdate, find_backdrops);
 }

@@ -14,7 +14,7 @@ use bevy::{
 
 use super::{
     anchors::{Anchor, Anchored},
-    inherit::{Heritage, Inherit, Inherited},
+    inherit::{Heritage, Inherited},
     levels::Levels,
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
@@ -157,12 +157,6 @@ impl OutlineStyle {
             opacity: style.opacity.unwrap_or(1.0),
             ..Default::default()
         }
-    }
-}
-
-impl Inherit for NoStyle {
-    fn is_inherited(&self) -> bool {
-        self.inherit
     }
 }
 

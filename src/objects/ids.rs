@@ -315,7 +315,7 @@ impl Records<'_> {
         let slot = slot.copied().unwrap_or(0);
         let id = self.ids.give(self.levels.object(self.groups.object(mesh)));
         let start = self.sections.get(mesh).unwrap_or(0);
-        let cutoff = self.writes.cutoffs.get(mesh);
+        let cutoff = self.writes.0.get(mesh);
         let cutoff = cutoff.copied().or(alpha_mask);
         [
             u32::from(id),

@@ -3,6 +3,8 @@
 //! An entity takes from the nearest entity on the way up, itself included, that has the component:
 //! always from itself, and from others if they let it.
 
+use std::marker::PhantomData;
+
 use bevy::{
     app::App,
     ecs::{
@@ -13,11 +15,17 @@ use bevy::{
         message::{Message, MessageReader, MessageWriter},
         observer::On,
         query::{Changed, QueryFilter, ROQueryItem, ReadOnlyQueryData},
+        resource::Resource,
         system::{Local, Query, SystemParam},
     },
+    reflect::GetTypeRegistration,
+    render::sync_world::MainEntityHashSet,
 };
 
-use super::groups::DEEPEST;
+use super::{
+    Backdrop, DepthWrite, LineWidths, NoStyle, ObjectSimplification, changes::Follow,
+    groups::DEEPEST, shared::Shared,
+};
 
 /// The entity got another parent or none, or lost a component that others inherit.
 #[derive(Message)]
@@ -36,11 +44,12 @@ pub(super) fn build(app: &mut App) {
         });
 }
 
-/// Notes the entities that lose a component.
-pub(super) fn watch<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Remove, C>, mut moved: MessageWriter<Moved>| {
-        moved.write(Moved::Component(on.entity));
-    });
+/// Registers a component, and notes the entities that lose it.
+pub(super) fn register<C: Component + GetTypeRegistration>(app: &mut App) {
+    app.register_type::<C>()
+        .add_observer(|on: On<Remove, C>, mut moved: MessageWriter<Moved>| {
+            moved.write(Moved::Component(on.entity));
+        });
 }
 
 /// What entities inherit: a component, or several that go together.
@@ -55,9 +64,21 @@ pub(super) trait Heritage: 'static {
 }
 
 /// A component that descendants inherit by itself.
-pub(super) trait Inherit: Component {
+pub(crate) trait Inherit: Component {
     fn is_inherited(&self) -> bool;
 }
+
+macro_rules! inherit_by_field {
+    ($($component:ty),*) => {
+        $(impl Inherit for $component {
+            fn is_inherited(&self) -> bool {
+                self.inherit
+            }
+        })*
+    };
+}
+
+inherit_by_field! { Backdrop, DepthWrite, LineWidths, NoStyle, ObjectSimplification }
 
 impl<C: Inherit> Heritage for C {
     type Own = &'static C;
@@ -68,7 +89,7 @@ impl<C: Inherit> Heritage for C {
     }
 }
 
-/// Keeps who inherits from whom. Every component has to be [watched](watch).
+/// Keeps who inherits from whom. Every component has to be [registered](register).
 #[derive(SystemParam)]
 pub(super) struct Inherited<'w, 's, H: Heritage> {
     own: Query<'w, 's, <H as Heritage>::Own>,
@@ -147,16 +168,50 @@ impl<H: Heritage> Inherited<'_, '_, H> {
     }
 }
 
+/// The values of the meshes that have a component or inherit it. Both worlds have a copy.
+#[derive(Resource)]
+pub(crate) struct Values<C, V>(pub Shared<V>, PhantomData<C>);
+
+impl<C, V> Default for Values<C, V> {
+    fn default() -> Self {
+        Self(Shared::default(), PhantomData)
+    }
+}
+
+impl<C: Inherit, V: Clone + PartialEq> Values<C, V> {
+    /// Updates them once in every frame; returns the meshes that have another one now, or none.
+    pub(super) fn update(
+        &mut self,
+        inherited: &mut Inherited<C>,
+        value: impl Fn(&C) -> V,
+    ) -> EntityHashSet {
+        let mut changed = inherited.update();
+        self.0.begin();
+        changed.retain(|mesh| {
+            let source = inherited.of(*mesh);
+            self.0.set(*mesh, source.map(|(_, own)| value(own)))
+        });
+        changed
+    }
+}
+
+impl<C: Component, V: Clone + PartialEq + Send + Sync + 'static> Follow for Values<C, V> {
+    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+        self.0.follow(&main.0, changed);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use bevy::{
         app::PostUpdate,
-        ecs::{resource::Resource, system::ResMut, world::World},
+        ecs::{system::ResMut, world::World},
+        reflect::Reflect,
     };
 
     use super::*;
 
-    #[derive(Component)]
+    #[derive(Component, Reflect)]
     struct Paint {
         color: u32,
         inherit: bool,
@@ -186,7 +241,7 @@ mod tests {
     fn app() -> App {
         let mut app = App::new();
         build(&mut app);
-        watch::<Paint>(&mut app);
+        register::<Paint>(&mut app);
         app.init_resource::<Painted>()
             .add_systems(PostUpdate, paint);
         app

@@ -253,7 +253,7 @@ pub(super) struct IdItems<'w> {
 
 impl IdItems<'_> {
     fn variant(&self, entity: Entity, drawn: &DrawnMesh, widths: bool) -> IdVariant {
-        let wanted = widths && self.wide.contains(entity);
+        let wanted = widths && self.wide.0.contains(entity);
         let has_colors = drawn.mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
         if wanted && !has_colors {
             warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colours");
@@ -267,7 +267,7 @@ impl IdItems<'_> {
     }
 
     pub fn is_backdrop(&self, mesh: MainEntity) -> bool {
-        self.backdrops.contains(mesh.id())
+        self.backdrops.0.contains(mesh.id())
     }
 
     /// The bin of an object, and where the engine has uploaded it.

@@ -19,7 +19,6 @@ use bevy::{
             TextureUsages, TextureView, UniformBuffer,
         },
         renderer::RenderQueue,
-        sync_world::MainEntityHashSet,
         texture::TextureCache,
         view::{ExtractedView, RetainedViewEntity},
     },
@@ -27,12 +26,10 @@ use bevy::{
 
 use super::{
     IdRequest, IdsWanted, ObjectStyles, Pressure, ViewLineWidths,
-    changes::Follow,
-    inherit::{Inherit, Inherited},
+    inherit::{Inherited, Values},
     phase::ObjectIdPhases,
     pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
-    shared::Shared,
     widths::WIDTH_FORMAT,
 };
 use crate::{bind_groups::Binder, gpu};
@@ -72,27 +69,8 @@ impl Default for LineWidths {
     }
 }
 
-/// The meshes with [`LineWidths`]. Both worlds have a copy.
-#[derive(Resource, Default)]
-pub(crate) struct WideMeshes(Shared<()>);
-
-impl WideMeshes {
-    pub fn contains(&self, mesh: Entity) -> bool {
-        self.0.get(mesh).is_some()
-    }
-}
-
-impl Follow for WideMeshes {
-    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
-        self.0.follow(&main.0, changed);
-    }
-}
-
-impl Inherit for LineWidths {
-    fn is_inherited(&self) -> bool {
-        self.inherit
-    }
-}
+/// The meshes with [`LineWidths`].
+pub(super) type WideMeshes = Values<LineWidths, ()>;
 
 /// Keeps [`WideMeshes`] up to date.
 pub(super) fn find_wide_meshes(
@@ -100,15 +78,9 @@ pub(super) fn find_wide_meshes(
     mut meshes: ResMut<WideMeshes>,
     mut styles: ResMut<ObjectStyles>,
 ) {
-    let changed = marked.update();
-    if changed.is_empty() {
-        return;
+    if !meshes.update(&mut marked, |_| ()).is_empty() {
+        styles.widths = !meshes.0.is_empty();
     }
-    meshes.0.begin();
-    for mesh in changed {
-        meshes.0.set(mesh, marked.of(mesh).map(|_| ()));
-    }
-    styles.widths = !meshes.0.is_empty();
 }
 
 /// The views whose meshes were queued with pipelines that draw widths too.

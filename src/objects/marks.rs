@@ -19,7 +19,7 @@ use bevy::{
 
 use super::{
     changes::Follow,
-    inherit::{Heritage, Inherited, watch},
+    inherit::{Heritage, Inherited, register},
     shared::Shared,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles, VISIBLE_ONLY},
 };
@@ -245,12 +245,9 @@ fn assign_marks(
 }
 
 pub(super) fn build(app: &mut App) {
-    app.register_type::<SelectionOutline>()
-        .register_type::<XRayOutline>()
-        .init_resource::<Marks>();
-    watch::<SelectionOutline>(app);
-    watch::<XRayOutline>(app);
-    app.add_systems(
+    register::<SelectionOutline>(app);
+    register::<XRayOutline>(app);
+    app.init_resource::<Marks>().add_systems(
         PostUpdate,
         assign_marks.after(super::components::assign_object_styles),
     );

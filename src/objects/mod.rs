@@ -94,6 +94,8 @@ pub use simplification::ObjectSimplification;
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 #[cfg(feature = "objects")]
+pub(crate) use transparent::DepthWrites;
+#[cfg(feature = "objects")]
 pub use work::ObjectWork;
 
 pub(crate) use object_depths::{
@@ -101,7 +103,7 @@ pub(crate) use object_depths::{
 };
 #[cfg(feature = "objects")]
 pub(crate) use sections::AllMeshes;
-pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
+pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
 
@@ -118,15 +120,14 @@ use bevy::{
         GpuResourceAppExt, Render, RenderApp,
         render_resource::{
             BindGroupLayoutEntry, ShaderStages, ShaderType, Texture, TextureSampleType,
-            TextureView,
-            binding_types::{storage_buffer_read_only_sized, texture_2d, texture_2d_multisampled},
+            TextureView, binding_types::storage_buffer_read_only_sized,
         },
         renderer::{RenderDevice, RenderQueue},
     },
     shader::load_shader_library,
 };
 
-use crate::schedule::PrepareComics;
+use crate::{gpu::sampled, schedule::PrepareComics};
 
 /// Format of the texture of object ids: id; style slot and section.
 pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
@@ -207,12 +208,7 @@ pub struct ViewObjectIds {
 
 /// The layout entry of the texture of object ids.
 pub(crate) fn ids_entry(multisampled: bool) -> BindGroupLayoutEntry {
-    let texture = if multisampled {
-        texture_2d_multisampled(TextureSampleType::Uint)
-    } else {
-        texture_2d(TextureSampleType::Uint)
-    };
-    texture.build(8, ShaderStages::FRAGMENT)
+    sampled(multisampled, TextureSampleType::Uint).build(8, ShaderStages::FRAGMENT)
 }
 
 /// The layout entry of the table of outline styles.
@@ -249,17 +245,10 @@ pub(crate) struct ObjectsPlugin;
 
 impl Plugin for ObjectsPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ObjectStyles>()
-            .init_resource::<DepthWrites>();
+        app.init_resource::<ObjectStyles>();
         #[cfg(feature = "objects")]
         {
-            app.register_type::<OutlineStyle>()
-                .register_type::<NoOutlines>()
-                .register_type::<NoStyle>()
-                .register_type::<PatternAnchor>()
-                .register_type::<ObjectSimplification>()
-                .register_type::<LineWidths>()
-                .init_resource::<line_widths::WideMeshes>()
+            app.init_resource::<line_widths::WideMeshes>()
                 .init_resource::<simplification::Dials>()
                 .add_systems(
                     bevy::app::PostUpdate,
@@ -274,12 +263,12 @@ impl Plugin for ObjectsPlugin {
             inherit::build(app);
             backdrop::build(app);
             levels::build(app);
-            inherit::watch::<OutlineStyle>(app);
-            inherit::watch::<NoOutlines>(app);
-            inherit::watch::<NoStyle>(app);
-            inherit::watch::<PatternAnchor>(app);
-            inherit::watch::<ObjectSimplification>(app);
-            inherit::watch::<LineWidths>(app);
+            inherit::register::<OutlineStyle>(app);
+            inherit::register::<NoOutlines>(app);
+            inherit::register::<NoStyle>(app);
+            inherit::register::<PatternAnchor>(app);
+            inherit::register::<ObjectSimplification>(app);
+            inherit::register::<LineWidths>(app);
             depth_test::build(app);
             marks::build(app);
             groups::build(app);

@@ -19,10 +19,8 @@ use bevy::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, FragmentState,
             RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
-            SpecializedMeshPipelineError, TextureFormat, TextureSampleType,
-            binding_types::{
-                storage_buffer_read_only, texture_2d, texture_2d_multisampled, uniform_buffer,
-            },
+            SpecializedMeshPipelineError, TextureFormat,
+            binding_types::{storage_buffer_read_only, uniform_buffer},
         },
         renderer::RenderAdapter,
     },
@@ -30,7 +28,7 @@ use bevy::{
 };
 
 use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
-use crate::gpu::definitions;
+use crate::gpu::{UNFILTERABLE, definitions, sampled};
 
 /// What all pipelines of this pass have in common.
 #[derive(Resource)]
@@ -100,16 +98,9 @@ pub(super) fn with_prepass_depth(
     layout: &BindGroupLayoutDescriptor,
     multisampled: bool,
 ) -> BindGroupLayoutDescriptor {
-    let float = TextureSampleType::Float { filterable: false };
-    let texture = if multisampled {
-        texture_2d_multisampled(float)
-    } else {
-        texture_2d(float)
-    };
+    let depth = sampled(multisampled, UNFILTERABLE);
     let mut layout = layout.clone();
-    layout
-        .entries
-        .push(texture.build(3, ShaderStages::FRAGMENT));
+    layout.entries.push(depth.build(3, ShaderStages::FRAGMENT));
     layout
 }
 

@@ -44,6 +44,10 @@ impl<V: Clone + PartialEq> Shared<V> {
         self.values.get(&entity)
     }
 
+    pub fn contains(&self, entity: Entity) -> bool {
+        self.values.contains_key(&entity)
+    }
+
     pub fn keys(&self) -> impl Iterator<Item = Entity> {
         self.values.keys().copied()
     }

@@ -1,15 +1,12 @@
 //! Objects that are simpler or more detailed than their distance makes them.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent, resource::Resource, system::ResMut},
+    ecs::{component::Component, reflect::ReflectComponent, system::ResMut},
     math::Vec2,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{
-    inherit::{Inherit, Inherited},
-    shared::Shared,
-};
+use super::inherit::{Inherited, Values};
 use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
 /// Changes how much effects simplify this object with distance: a hero keeps all details, or a
@@ -78,27 +75,15 @@ impl ObjectSimplification {
 /// The dial of an object without an [`ObjectSimplification`].
 pub(super) const BY_DISTANCE: Vec2 = Vec2::X;
 
-impl Inherit for ObjectSimplification {
-    fn is_inherited(&self) -> bool {
-        self.inherit
-    }
-}
-
 /// The dials of the meshes that have one of their own.
-#[derive(Resource, Default)]
-pub(super) struct Dials(pub Shared<Vec2>);
+pub(super) type Dials = Values<ObjectSimplification, Vec2>;
 
 /// Keeps [`Dials`] up to date.
 pub(super) fn assign_dials(
     mut simplified: Inherited<ObjectSimplification>,
     mut dials: ResMut<Dials>,
 ) {
-    let changed = simplified.update();
-    dials.0.begin();
-    for mesh in changed {
-        let dial = simplified.of(mesh).map(|(_, simplified)| simplified.dial());
-        dials.0.set(mesh, dial);
-    }
+    dials.update(&mut simplified, |simplified| simplified.dial());
 }
 
 #[cfg(test)]

@@ -93,13 +93,6 @@ const ALL_KINDS: u32 = 7;
 #[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;
 
-/// The transparent meshes that draw into the depth of effects. Both worlds have a copy.
-#[derive(Resource, Default)]
-pub(crate) struct DepthWrites {
-    /// The least alpha that is drawn, by main-world entity.
-    pub cutoffs: Shared<f32>,
-}
-
 /// Which components of objects there are in a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ObjectChanges {

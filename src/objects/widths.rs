@@ -5,13 +5,13 @@ use bevy::{
     ecs::component::Component,
     render::{
         render_resource::{
-            BindGroupLayoutEntry, ShaderStages, ShaderType, Texture, TextureFormat,
-            TextureSampleType, TextureView,
-            binding_types::{texture_2d, texture_2d_multisampled},
+            BindGroupLayoutEntry, ShaderStages, ShaderType, Texture, TextureFormat, TextureView,
         },
         texture::CachedTexture,
     },
 };
+
+use crate::gpu::{UNFILTERABLE, sampled};
 
 /// Format of the texture of [`ViewLineWidths`].
 pub(crate) const WIDTH_FORMAT: TextureFormat = TextureFormat::R8Unorm;
@@ -69,11 +69,5 @@ impl From<CachedTexture> for ViewLineWidths {
 
 /// The layout entry of the texture of factors.
 pub(crate) fn widths_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEntry {
-    let sampled = TextureSampleType::Float { filterable: false };
-    let texture = if multisampled {
-        texture_2d_multisampled(sampled)
-    } else {
-        texture_2d(sampled)
-    };
-    texture.build(9, stages)
+    sampled(multisampled, UNFILTERABLE).build(9, stages)
 }

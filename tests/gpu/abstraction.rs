@@ -19,10 +19,7 @@ fn hundred(flip: bool) -> DepthMap {
 
 /// Before a white background.
 fn before_white(mut small: Small) -> Small {
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::WHITE.into();
     small
 }
 

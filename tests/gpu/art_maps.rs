@@ -6,7 +6,8 @@ use crate::{
     hatched_material::{
         SIZE, WhiteRoom, ball, covers, frames, light_from, plain, tone, turned, wall, with,
     },
-    hatching::{differ, least_and_most, mean},
+    hatching::{differ, least_and_most},
+    line_scenes::mean,
     prelude::*,
     ramp::{put, room, set_light},
 };

@@ -9,7 +9,7 @@ use bevy_comics::{
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
 
-use crate::{failures::prepasses::still, focus::shot, prelude::*, styles::styles};
+use crate::{failures::prepasses::still, prelude::*, styles::styles};
 
 fn preset(name: &str) -> ComicStyle {
     let mut style = presets::find(name).expect(name).style();
@@ -89,7 +89,7 @@ fn check_ways(size: UVec2, ways: &[(&str, &str)]) {
     let mut small = Small::new(size, Msaa::Off);
     for (from, to) in ways.iter().copied() {
         let (a, b) = (preset(from), preset(to));
-        let whole = mean_apart(&shot(&mut small, &a), &shot(&mut small, &b));
+        let whole = mean_apart(&small.shot(&a), &small.shot(&b));
         assert!(whole > 4.0, "{from} and {to} differ: {whole}");
         let step = 1.0 / 1024.0;
         for (before, after) in [
@@ -97,7 +97,7 @@ fn check_ways(size: UVec2, ways: &[(&str, &str)]) {
             (0.5 - 0.5 * step, 0.5 + 0.5 * step),
             (1.0 - step, 1.0),
         ] {
-            let pictures = [before, after].map(|t| shot(&mut small, &a.blend(&b, t)));
+            let pictures = [before, after].map(|t| small.shot(&a.blend(&b, t)));
             let apart = mean_apart(&pictures[0], &pictures[1]);
             assert!(
                 apart < 1.0,
@@ -164,11 +164,6 @@ fn three_styles() -> [ComicStyle; 3] {
     ]
 }
 
-fn fading(small: &Small) -> bool {
-    let world = small.headless.app.world();
-    world.get::<StyleTransition>(small.camera).is_some()
-}
-
 #[derive(Resource, Default)]
 struct Arrivals(Vec<Entity>);
 
@@ -182,14 +177,13 @@ fn a_transition_takes_its_time_and_arrives() {
     );
     let arrivals = |small: &Small| small.headless.app.world().resource::<Arrivals>().0.len();
     let [a, b, c] = three_styles();
-    small.style(&a);
-    small.settle();
+    small.style(&a).settle();
     // The test clock advances 1/60 s per frame.
     let slow = StyleTransition::to(b.clone(), 1.0).with_easing(TransitionEasing::Linear);
     small.insert(slow);
     small.headless.step(31);
     let half = look(&small);
-    assert!(fading(&small) && half != unnamed(&a) && half != unnamed(&b));
+    assert!(small.has::<StyleTransition>() && half != unnamed(&a) && half != unnamed(&b));
     let want = unnamed(&a).blend(&b, 0.5);
     let [found, want] = [&half, &want].map(|s| s.get::<Contours>().expect("contours").width);
     assert!((found - want).abs() < 0.05, "{found}, {want}");
@@ -203,7 +197,7 @@ fn a_transition_takes_its_time_and_arrives() {
         "it starts where the last one was"
     );
     small.headless.step(40);
-    assert!(!fading(&small));
+    assert!(!small.has::<StyleTransition>());
     assert_eq!(look(&small), unnamed(&c), "it arrives exactly");
     assert_eq!(
         arrivals(&small),
@@ -233,16 +227,15 @@ fn a_transition_takes_its_time_and_arrives() {
 fn a_transition_in_real_time_runs_while_the_game_is_paused() {
     let mut small = Small::new(TINY, Msaa::Off);
     let [a, b, _] = three_styles();
-    small.style(&a);
-    small.settle();
+    small.style(&a).settle();
     small.world().resource_mut::<Time<Virtual>>().pause();
     small.insert(StyleTransition::to(b.clone(), 0.5));
     small.headless.step(40);
-    assert!(fading(&small));
+    assert!(small.has::<StyleTransition>());
     small.insert(StyleTransition::to(b.clone(), 0.5).in_real_time());
     // The clock of the test advances by 1/60 s a frame.
     small.headless.step(30);
-    assert!(fading(&small));
+    assert!(small.has::<StyleTransition>());
     small.headless.step(4);
     assert_eq!(look(&small), unnamed(&b));
 }
@@ -253,8 +246,7 @@ fn a_transition_and_the_cameras_file_agree() {
     let [a, b, c] = three_styles();
     let mut files = small.world().resource_mut::<Assets<ComicStyle>>();
     let [first, second] = [a, b.clone()].map(|style| files.add(style));
-    small.insert(Comic(first));
-    small.settle();
+    small.insert(Comic(first)).settle();
     small.insert(StyleTransition::to_asset(second.clone(), 0.1));
     small.headless.step(12);
     assert_eq!(look(&small), unnamed(&b));
@@ -280,11 +272,11 @@ fn a_transition_and_the_cameras_file_agree() {
     for _ in 0..200 {
         small.headless.step(1);
         std::thread::sleep(Duration::from_millis(2));
-        if !fading(&small) {
+        if !small.has::<StyleTransition>() {
             break;
         }
     }
-    assert!(!fading(&small));
+    assert!(!small.has::<StyleTransition>());
     assert_eq!(look(&small), unnamed(&c));
 }
 

@@ -19,12 +19,6 @@ fn thin(bridge: u32) -> Outlines {
     }
 }
 
-fn drawn(small: &mut Small, outlines: Outlines) -> image::RgbaImage {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
-    small.picture()
-}
-
 /// Pixels that are not white.
 fn mask(picture: &image::RgbaImage) -> Vec<bool> {
     let pixels = picture.pixels();
@@ -63,17 +57,17 @@ fn a_wire_with_short_gaps_looks_like_a_whole_one() {
     let mut small = towards_the_sky(SIZE);
     for (upright, gaps) in wires {
         dashed(&mut small, 0.0, upright, Color::WHITE);
-        let whole = drawn(&mut small, thin(0));
+        let whole = small.outlined(thin(0));
         let ink = mask(&whole).into_iter().filter(|ink| *ink).count();
         assert_eq!(ink, 48, "a line of 48 pixels");
         for &gap in gaps {
             dashed(&mut small, gap as f32, upright, Color::WHITE);
-            let before = drawn(&mut small, thin(0));
+            let before = small.outlined(thin(0));
             assert!(before != whole);
             let pieces = fragments(&mask(&before), SIZE.x as usize, 1000);
             assert!(pieces >= 4);
             for bridge in 1..=3 {
-                let found = mask(&drawn(&mut small, thin(bridge)));
+                let found = mask(&small.outlined(thin(bridge)));
                 let is_closed = bridge >= gap;
                 let want = mask(if is_closed { &whole } else { &before });
                 let differ = found.iter().zip(want).filter(|(a, b)| **a != *b).count();
@@ -110,7 +104,7 @@ fn thin_wires_at_small_angles_are_whole() {
                     .with_rotation(Quat::from_rotation_z(f32::atan(slope) + turn)),
             );
             let parts = |small: &mut Small, bridge| {
-                let picture = drawn(small, thin(bridge));
+                let picture = small.outlined(thin(bridge));
                 fragments(&mask(&picture), SIZE.x as usize, 1000)
             };
             let [open, closed] = [0, 3].map(|bridge| parts(&mut small, bridge));
@@ -152,7 +146,7 @@ fn closed_gaps_are_like_the_line_beside_them() {
             let pictures = [0.0, 3.0].map(|gap| {
                 dashed(&mut small, gap, false, Color::srgb(0.9, 0.5, 0.2));
                 small.world().spawn((KeyLight, light, Object));
-                drawn(&mut small, outlines(3))
+                small.outlined(outlines(3))
             });
             let [whole, closed] = pictures.map(|picture| {
                 // The middle of a gap, without the row in which the wire shows beside thin lines.

@@ -40,11 +40,6 @@ fn limited() -> Small {
     scene(SIZE, Some(limits))
 }
 
-fn shoot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
-    small.style(style);
-    small.settle().picture()
-}
-
 /// Whether the lines of the last picture were drawn without compute shaders.
 fn is_by_fragments(small: &Small) -> bool {
     let world = small.headless.app.world();
@@ -57,7 +52,7 @@ fn is_by_fragments(small: &Small) -> bool {
 /// any.
 fn assert_same(with: &mut Small, without: &mut Small, plain: &RgbaImage, named: &Named) {
     let (name, style) = named;
-    let [wanted, found] = [&mut *with, &mut *without].map(|small| shoot(small, style));
+    let [wanted, found] = [&mut *with, &mut *without].map(|small| small.shot(style));
     assert!(is_by_fragments(without) && !is_by_fragments(with), "{name}");
     let far = (wanted.as_raw().iter().zip(found.as_raw()))
         .filter(|(a, b)| a.abs_diff(**b) > 1)
@@ -82,7 +77,7 @@ fn outlines(width: f32) -> ComicStyle {
 
 fn check(styles: &[Named]) -> Small {
     let (mut with, mut without) = (scene(SIZE, None), limited());
-    let plain = shoot(&mut with, &ComicStyle::new());
+    let plain = with.shot(&ComicStyle::new());
     for named in styles {
         assert_same(&mut with, &mut without, &plain, named);
     }
@@ -129,14 +124,13 @@ fn parts_of_lines_without_compute_passes_are_the_same() {
         ("creases alone", ComicStyle::new().with(creases)),
         ("object edges alone", ComicStyle::new().with(object_edges)),
     ]);
-    let pictures =
-        [creases, signs].map(|lines| shoot(&mut without, &ComicStyle::new().with(lines)));
+    let pictures = [creases, signs].map(|lines| without.shot(&ComicStyle::new().with(lines)));
     assert!(pictures[0] == pictures[1]);
     let even = Outlines {
         width: 8.0,
         ..along_cracks()
     };
-    let wanted = shoot(&mut without, &ComicStyle::new().with(even));
+    let wanted = without.shot(&ComicStyle::new().with(even));
     for factor in [0.0, 0.25, 2.0] {
         let weight = LineWeight {
             outer: factor,
@@ -147,7 +141,7 @@ fn parts_of_lines_without_compute_passes_are_the_same() {
             ..LineWeight::EVEN
         };
         let style = ComicStyle::new().with(Outlines { weight, ..even });
-        assert!(shoot(&mut without, &style) == wanted, "{factor}");
+        assert!(without.shot(&style) == wanted, "{factor}");
     }
     assert_eq!(without.errors(), 0);
 }
@@ -164,13 +158,13 @@ fn lines_of_a_view_larger_than_a_buffer_are_the_same() {
         ..gpu().device.limits()
     };
     let mut without = scene(SIZE, Some(limits));
-    shoot(&mut without, &outlines(2.0));
+    without.shot(&outlines(2.0));
     assert!(!is_by_fragments(&without), "the small view is not searched");
     without.headless.resize(large, 1.0);
     let target = without.headless.render_target();
     without.insert(target);
     let mut with = scene(large, None);
-    let plain = shoot(&mut with, &ComicStyle::new());
+    let plain = with.shot(&ComicStyle::new());
     for (name, width) in [("2 px", 2.0), ("16 px", 16.0)] {
         assert_same(&mut with, &mut without, &plain, &(name, outlines(width)));
     }

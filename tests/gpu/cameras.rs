@@ -108,9 +108,7 @@ fn a_second_camera_changes_only_what_it_draws() {
         if hdr {
             small.insert(Hdr);
         }
-        small.style(&comic());
-        small.settle();
-        let alone = small.picture();
+        let alone = small.shot(&comic());
         cube(&mut small, Color::srgb(0.2, 0.7, 0.3));
         let cases = [
             (overlay_camera(1), true),
@@ -122,8 +120,7 @@ fn a_second_camera_changes_only_what_it_draws() {
         for (settings, masks) in cases.into_iter().take(if is_plain { 3 } else { 2 }) {
             let mut drawn = |style: &ComicStyle, mask: StyleMask| {
                 let camera = second(&mut small, (settings.clone(), mask), style);
-                small.settle();
-                let picture = small.picture();
+                let picture = small.settle().picture();
                 small.world().despawn(camera);
                 picture
             };
@@ -159,9 +156,7 @@ fn a_second_camera_changes_only_what_it_draws() {
 #[test]
 fn ids_tell_what_a_camera_that_loads_depth_has_drawn() {
     let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
-    small.style(&comic());
-    small.settle();
-    let alone = small.picture();
+    let alone = small.shot(&comic());
     // Half behind the red cube.
     let marker = small.put(
         Cuboid::default(),
@@ -176,8 +171,7 @@ fn ids_tell_what_a_camera_that_loads_depth_has_drawn() {
     let mut drawn = |style: &ComicStyle| {
         let camera = second(&mut small, over_the_first(), style);
         small.world().entity_mut(camera).insert(load.clone());
-        small.settle();
-        let picture = small.picture();
+        let picture = small.settle().picture();
         small.world().despawn(camera);
         picture
     };
@@ -228,8 +222,7 @@ fn colour_effects_change_what_is_seen_of_a_surface() {
             };
             let sheet = Plane3d::default().mesh().size(40.0, 40.0);
             let sheet = small.put(sheet, material, Transform::IDENTITY);
-            small.style(&style);
-            small.settle();
+            small.style(&style).settle();
             let (before, after) = small.pass();
             small.world().despawn(sheet);
             let middle = before.pixels.len() / 2 + 48;
@@ -266,8 +259,7 @@ fn added_light_stays() {
         ComicStyle::new().with(ToneRamp::default()),
         ComicStyle::new().with(Colorization::SEPIA),
     ] {
-        small.style(&style);
-        small.settle();
+        small.style(&style).settle();
         let (before, after) = small.pass();
         let middle = before.pixels.len() / 2 + 48;
         let light = |picture: &FloatImage| picture.pixels[middle][..3].iter().sum::<f32>();
@@ -293,9 +285,7 @@ fn with_bare_cube(
     style: &ComicStyle,
 ) -> image::RgbaImage {
     small.insert(beyond);
-    small.style(style);
-    small.settle();
-    small.picture()
+    small.shot(style)
 }
 
 /// Where the picture shows what is not in the prepass, `NoLines` draws no lines of what is behind it,
@@ -345,14 +335,11 @@ fn what_is_not_in_the_prepass_keeps_its_colours() {
 #[test]
 fn an_overlay_is_drawn_over_the_comic() {
     let mut small = Small::new(UVec2::new(192, 128), Msaa::Sample4);
-    small.style(&comic());
-    small.settle();
-    let alone = small.picture();
+    let alone = small.shot(&comic());
     let green = Color::srgb(0.2, 0.7, 0.3);
     let marker = cube(&mut small, green);
     small.insert(ComicOverlay::default());
-    small.settle();
-    let shown = different(&small.picture(), &alone);
+    let shown = different(&small.settle().picture(), &alone);
     let [r, g, b, _] = green.to_srgba().to_u8_array();
     let picture = small.picture();
     let is_exact = |(x, y): &&(u32, u32)| {
@@ -364,8 +351,7 @@ fn an_overlay_is_drawn_over_the_comic() {
     // Below the ground, it is hidden.
     let below = Transform::from_xyz(0.0, -2.0, 1.0);
     small.world().entity_mut(marker).insert(below);
-    small.settle();
-    assert!(different(&small.picture(), &alone).is_empty());
+    assert!(different(&small.settle().picture(), &alone).is_empty());
     // The camera turns, and sees the marker through its overlay.
     small
         .world()
@@ -373,11 +359,9 @@ fn an_overlay_is_drawn_over_the_comic() {
         .insert(Transform::from_xyz(9.0, 1.0, 0.0));
     let ahead = Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(9.0, 1.0, 0.0), Vec3::Y);
     small.insert(ahead);
-    small.settle();
-    let middle = small.picture().get_pixel(96, 64).0;
+    let middle = small.settle().picture().get_pixel(96, 64).0;
     assert!((0..3).all(|c| middle[c].abs_diff([r, g, b][c]) <= 1));
-    small.insert(Exposure { ev100: 3.0 });
-    small.settle();
+    small.insert(Exposure { ev100: 3.0 }).settle();
     let world = small.world();
     let mut exposures = world.query::<&Exposure>();
     assert!(exposures.iter(world).all(|own| own.ev100 == 3.0));
@@ -408,13 +392,7 @@ fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbour() {
         small.put(stripe, unlit(Color::srgb(tone, tone, tone)), at);
     }
     let (left, top, height) = (41, 11, 41);
-    let mut camera = small.camera_mut();
-    let mut camera = camera.get_mut::<Camera>().expect("a camera");
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(left, top),
-        physical_size: UVec2::new(51, height),
-        ..default()
-    });
+    small.see_in([left, top, 51, height]);
     let picture = small.settle().picture();
     let [first, second] = [left, left + 1].map(|x| {
         let column = (top..top + height).map(|y| picture.get_pixel(x, y).0);
@@ -440,8 +418,7 @@ fn an_empty_camera_bends_the_finished_comic() {
     let size = UVec2::new(192, 128);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let mut small = Small::new(size, msaa);
-        small.style(&comic());
-        let comic = small.settle().picture();
+        let comic = small.shot(&comic());
         let lens = LensDistortion::default();
         let settings = (over_the_first(), lens.clone());
         second(&mut small, settings, &ComicStyle::new());
@@ -544,9 +521,7 @@ fn a_mirrored_view_is_the_mirrored_picture() {
     let style = ComicStyle::new()
         .with(ToneBands::default())
         .with(Outlines::default());
-    small.style(&style);
-    small.settle();
-    let mut expected = small.picture();
+    let mut expected = small.shot(&style);
     image::imageops::flip_horizontal_in_place(&mut expected);
     let camera = small.camera;
     let projection = small.world().get::<Projection>(camera).cloned();
@@ -567,8 +542,7 @@ fn a_mirrored_view_is_the_mirrored_picture() {
     };
     small.insert((Projection::custom(mirrored), settings));
     small.settle();
-    small.settle();
-    let found = small.picture();
+    let found = small.settle().picture();
     let pixels = found.pixels().zip(expected.pixels());
     let is_other =
         |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 2);

@@ -12,30 +12,29 @@ fn styled() -> Small {
     small
 }
 
-fn shoot(small: &mut Small) -> RgbaImage {
-    small.settle();
-    small.picture()
-}
-
 #[test]
 fn a_weight_mixes_and_none_costs_nothing() {
     let mut small = styled();
-    let full = shoot(&mut small);
+    let full = small.settle().picture();
     small.insert(StyleWeight(1.0));
     assert_eq!(
-        shoot(&mut small),
+        small.settle().picture(),
         full,
         "all of it is as without the component"
     );
     small.insert(StyleWeight(f32::NAN));
-    assert_eq!(shoot(&mut small), full, "what is no number counts as 1");
+    assert_eq!(
+        small.settle().picture(),
+        full,
+        "what is no number counts as 1"
+    );
     small.insert(StyleWeight(0.0));
-    let none = shoot(&mut small);
+    let none = small.settle().picture();
     assert!(!small.ran(ComicsStage::Stylize) && !small.ran(ComicsStage::DepthRange));
     small.insert(StyleWeight(-3.0));
-    assert_eq!(shoot(&mut small), none, "a weight is clamped");
+    assert_eq!(small.settle().picture(), none, "a weight is clamped");
     small.insert(StyleWeight(0.5));
-    let half = shoot(&mut small);
+    let half = small.settle().picture();
     let mut changed = 0;
     for (x, y, pixel) in half.enumerate_pixels() {
         let (a, b) = (linear(&none, x, y), linear(&full, x, y));
@@ -49,26 +48,25 @@ fn a_weight_mixes_and_none_costs_nothing() {
 
     let mut camera = small.camera_mut();
     camera.remove::<(Desaturation, Contours, StyleWeight)>();
-    assert_eq!(shoot(&mut small), none, "none is the original");
+    assert_eq!(small.settle().picture(), none, "none is the original");
 }
 
 #[test]
 fn a_split_shows_both_pictures_to_the_bit() {
     let mut small = styled();
-    let full = shoot(&mut small);
+    let full = small.settle().picture();
     small.insert(StyleWeight(0.0));
-    let none = shoot(&mut small);
+    let none = small.settle().picture();
     small.insert((StyleWeight(1.0), SplitView { at: 0.25 }));
-    let both = shoot(&mut small);
+    let both = small.settle().picture();
     let line = size().x / 4;
     for (x, y, pixel) in both.enumerate_pixels() {
         let want = if x < line { &none } else { &full };
         assert_eq!(pixel, want.get_pixel(x, y), "{x}, {y}");
     }
     small.insert(SplitView { at: 7.0 });
-    assert_eq!(shoot(&mut small), none);
-    small.insert(SplitView { at: f32::NAN });
-    shoot(&mut small);
+    assert_eq!(small.settle().picture(), none);
+    small.insert(SplitView { at: f32::NAN }).settle();
     assert_eq!(small.errors(), 0);
 }
 
@@ -83,7 +81,7 @@ fn codes(picture: &RgbaImage) -> BTreeSet<[u8; 3]> {
 /// The picture of a debug view, which is not the original.
 fn show(small: &mut Small, view: DebugView, original: &RgbaImage) -> RgbaImage {
     small.insert(view);
-    let picture = shoot(small);
+    let picture = small.settle().picture();
     assert_eq!(small.errors(), 0, "{view:?}");
     assert_ne!(picture, *original, "{view:?}");
     picture
@@ -108,7 +106,7 @@ fn every_multisampled_view_shows_what_it_says() {
 
 fn assert_views_of_the_scene(msaa: Msaa) {
     let mut small = Small::new(size(), msaa);
-    let original = shoot(&mut small);
+    let original = small.settle().picture();
     let show = |small: &mut Small, view| show(small, view, &original);
     // No effect on the camera: a debug view requests what it needs.
     let map = show(&mut small, DebugView::DepthMap);
@@ -145,7 +143,7 @@ fn assert_views_of_the_scene(msaa: Msaa) {
 
 fn assert_views_of_effects(msaa: Msaa) {
     let mut small = Small::new(size(), msaa);
-    let original = shoot(&mut small);
+    let original = small.settle().picture();
     let show = |small: &mut Small, view| show(small, view, &original);
     let map = show(&mut small, DebugView::DepthMap);
     let bands = show(&mut small, DebugView::Effect("tone_bands"));
@@ -183,7 +181,7 @@ fn the_histogram_counts_every_depth_once() {
         VisibleDepthRange::default(),
         DebugView::DepthMap,
     ));
-    let map = shoot(&mut small);
+    let map = small.settle().picture();
     let found = histogram(&mut small);
     let range = small.range().and_then(VisibleDepthRange::distances);
     let (near, far) = range.expect("geometry");
@@ -237,13 +235,14 @@ fn a_sketch_fades_in() {
     for lines in [None, Some(outlines)] {
         let lined = with_option(ComicStyle::default(), lines);
         let style = |sketch| with_option(lined.clone(), sketch);
-        small.style(&style(None));
-        let before = shoot(&mut small);
-        small.style(&style(Some(sketch(0.0))));
-        assert_eq!(shoot(&mut small), before, "no amount is no sketch");
+        let before = small.shot(&style(None));
+        assert_eq!(
+            small.shot(&style(Some(sketch(0.0)))),
+            before,
+            "no amount is no sketch"
+        );
         assert!(!small.ran(ComicsStage::of::<Sketch>()));
-        small.style(&style(Some(sketch(0.004))));
-        let begun = shoot(&mut small);
+        let begun = small.shot(&style(Some(sketch(0.004))));
         let apart = before
             .pixels()
             .zip(begun.pixels())
@@ -251,10 +250,8 @@ fn a_sketch_fades_in() {
             .sum::<u32>() as f64
             / f64::from(160 * 96);
         assert!(apart < 2.0, "with lines {}: {apart} codes", lines.is_some());
-        small.style(&style(Some(sketch(1.0))));
-        let whole = shoot(&mut small);
-        small.style(&style(Some(sketch(0.9999))));
-        let nearly = shoot(&mut small);
+        let whole = small.shot(&style(Some(sketch(1.0))));
+        let nearly = small.shot(&style(Some(sketch(0.9999))));
         for (a, b) in whole.pixels().zip(nearly.pixels()) {
             assert!((0..3).all(|i| a[i].abs_diff(b[i]) <= 1), "{a:?} {b:?}");
         }

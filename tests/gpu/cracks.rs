@@ -129,8 +129,7 @@ fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
         for &outlines in settings {
             let style = outlined(outlines);
             small.insert(VisibleDepthRange::default());
-            small.style(&style);
-            small.settle();
+            small.style(&style).settle();
             let what = format!("{msaa:?}, {outlines:?}");
             let found = small.cracks().expect("lines");
             assert_eq!(found.rect, [0, 0, SIZE.x, SIZE.y]);
@@ -203,8 +202,7 @@ fn buffers_shrink_with_the_picture() {
     ] {
         small.headless.resize(size, 1.0);
         let target = small.headless.render_target();
-        small.insert(target);
-        small.settle();
+        small.insert(target).settle();
         let room = small.cracks().expect("lines").words.len();
         assert_eq!(room, (size.x * size.y) as usize, "{size}");
     }

@@ -15,8 +15,7 @@ fn cube(small: &mut Small, msaa: Msaa, style: &ComicStyle) -> Entity {
     towards_the_sky_again(small, msaa);
     let at = leaning(0.0, 0.0);
     let cube = small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
-    small.style(style);
-    small.settle();
+    small.style(style).settle();
     cube
 }
 
@@ -118,8 +117,7 @@ fn creases_are_as_wide_as_their_weight() {
             crease: factor,
             ..LineWeight::EVEN
         };
-        small.style(&creases(weight));
-        small.settle();
+        small.style(&creases(weight)).settle();
         for shift in [0.0, 0.3] {
             let picture = moved(&mut small, cube, leaning(0.0, shift));
             let want = f64::from(WIDTH * factor);
@@ -143,8 +141,7 @@ fn other_edges_do_not_move_creases() {
     small.world().entity_mut(cube).insert(leaning(0.0, 0.3));
     // A bar two pixels to the left of the edge, in front of it.
     wall(&mut small, [-20.0, -10.0], [-1.2, 10.0], 100.0);
-    small.settle();
-    let found = rows(&small.picture(), 0.0, 0.3);
+    let found = rows(&small.settle().picture(), 0.0, 0.3);
     for [error, ink] in found {
         assert!(error.abs() < 0.5, "{error}");
         assert!(ink > 0.9 * f64::from(WIDTH), "{ink}");
@@ -181,9 +178,7 @@ fn bumps_of_normal_maps_have_no_creases() {
     let cube = small.put(cube.expect("it has uvs"), bumpy, leaning(0.3, 0.0));
     small.world().entity_mut(cube).insert(MeshSections::NONE);
     let mut bumps = |normal_maps| {
-        small.style(&bumpy_creases(normal_maps));
-        small.settle();
-        let picture = small.picture();
+        let picture = small.shot(&bumpy_creases(normal_maps));
         for y in 12..52 {
             let edge = 48.0 - (31.5 - f64::from(y)) * 0.3f64.tan();
             let middle = (edge - 4.0) as u32..(edge + 4.0) as u32;
@@ -235,8 +230,7 @@ fn smooth_bevels_keep_their_creases() {
         let bevel = small.put(bevel(width), unlit(Color::WHITE), at);
         small.world().entity_mut(bevel).insert(MeshSections::NONE);
         let mut ink = |normal_maps| {
-            small.style(&bumpy_creases(normal_maps));
-            small.settle();
+            small.style(&bumpy_creases(normal_maps)).settle();
             [0.0, 0.2, 0.4, 0.6, 0.8].map(|shift| {
                 let at = Transform::from_xyz(shift, 0.0, -400.0);
                 let picture = moved(&mut small, bevel, at);

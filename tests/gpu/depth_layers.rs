@@ -78,8 +78,7 @@ fn three_groups_of_distances_are_three_layers() {
                     ..default()
                 };
                 small.style(&with_map(ComicStyle::new().with(layers), map));
-                let entity = small.camera;
-                small.world().trigger(CameraCut { entity });
+                small.cut();
                 let what = format!("{msaa:?}, {distances:?}, {mapping:?}");
                 assert_three_layers(seen(&mut small), &what);
             }
@@ -239,11 +238,9 @@ fn long_box(small: &mut Small, distance: f32) -> Entity {
 fn a_figure_is_in_one_layer_and_the_ground_in_all() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     long_box(&mut small, 26.5);
-    small.style(&at_a_quarter(Granularity::Pixel));
-    small.settle();
+    small.style(&at_a_quarter(Granularity::Pixel)).settle();
     assert_eq!(layers_before_the_sky(&mut small), [true, true], "pixels");
-    small.style(&at_a_quarter(Granularity::Object));
-    small.settle();
+    small.style(&at_a_quarter(Granularity::Object)).settle();
     assert_eq!(
         layers_before_the_sky(&mut small),
         [false, true],
@@ -253,10 +250,8 @@ fn a_figure_is_in_one_layer_and_the_ground_in_all() {
     let ground = Cuboid::new(40.0, 1.0, 90.0);
     let at = Transform::from_xyz(0.0, -4.0, -50.0);
     small.put(ground, StandardMaterial::default(), at);
-    small.settle();
-    let by_object = small.picture();
-    small.style(&at_a_quarter(Granularity::Pixel));
-    small.settle();
+    let by_object = small.settle().picture();
+    small.style(&at_a_quarter(Granularity::Pixel)).settle();
     assert_eq!(
         layers_before_the_sky(&mut small),
         [true, true],
@@ -270,8 +265,7 @@ fn a_figure_is_in_one_layer_and_the_ground_in_all() {
 fn an_object_that_jitters_at_a_border_stays_in_its_layer() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     let figure = long_box(&mut small, 26.3);
-    small.style(&at_a_quarter(Granularity::Object));
-    small.settle();
+    small.style(&at_a_quarter(Granularity::Object)).settle();
     let first = layers_before_the_sky(&mut small);
     assert_ne!(first[0], first[1], "one layer");
     let place = |small: &mut Small, distance: f32| {
@@ -302,9 +296,7 @@ fn objects_have_layers_in_other_views_too() {
         small.insert(Transform::from_xyz(origin, 0.0, origin));
         let mut at = small.world().get_mut::<Transform>(figure).expect("there");
         at.translation += Vec3::new(origin, 0.0, origin);
-        small.style(&at_a_quarter(Granularity::Object));
-        small.settle();
-        let picture = small.picture();
+        let picture = small.shot(&at_a_quarter(Granularity::Object));
         let places = picture.enumerate_pixels();
         let found: Vec<_> = places.map(|(x, y, _)| code(&picture, x, y)).collect();
         let count = |k: usize| {
@@ -331,8 +323,7 @@ fn lined(small: &mut Small, layers: DepthLayers, flip: bool) -> image::RgbaImage
     };
     let style = ComicStyle::new().with(outlines).with(layers);
     let map = DepthMap { flip, ..hundred() };
-    small.style(&with_map(style, map));
-    small.settle().picture()
+    small.shot(&with_map(style, map))
 }
 
 /// The width of the lines across the left edges of the cards.
@@ -379,10 +370,7 @@ fn lines_have_the_width_opacity_and_colour_of_every_kind_of_layer() {
 
 fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
     let mut small = Small::new(UVec2::new(64, 64), msaa);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::WHITE.into();
     cards(&mut small, [10.0, 30.0, 90.0]);
     let even = line_widths(&lined(&mut small, DepthLayers::PLAIN, false));
     assert!(
@@ -478,9 +466,7 @@ fn hatching_and_dots_are_as_strong_as_in_their_layer() {
         };
         layers.background.hatching = 0.0;
         layers.background.halftone = 0.0;
-        small.style(&with_map(style.with(layers), hundred()));
-        small.settle();
-        let picture = small.picture();
+        let picture = small.shot(&with_map(style.with(layers), hundred()));
         // The spread of codes in a square in the middle of each card.
         let spread = rows(&picture).map(|y| {
             let codes = (0..400).map(|k| picture.get_pixel(54 + k % 20, y - 10 + k / 20).0[1]);

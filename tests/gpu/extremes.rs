@@ -25,11 +25,6 @@ fn wall(small: &mut Small, size: f32, distance: f32, material: StandardMaterial)
     small.put(Rectangle::new(size, size), material, at);
 }
 
-fn drawn(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
-    small.style(style);
-    small.settle().picture()
-}
-
 /// The largest difference of a pixel from the first one, in codes.
 fn spread(picture: &image::RgbaImage) -> u8 {
     let first = picture.get_pixel(0, 0).0;
@@ -57,8 +52,8 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
         empty(&mut small);
         let color = unlit(Color::srgb(0.8, 0.3, 0.2));
         wall(&mut small, distance * 10.0, distance, color);
-        let original = drawn(&mut small, &ComicStyle::new());
-        let picture = drawn(&mut small, &full().without::<ToneBands>());
+        let original = small.shot(&ComicStyle::new());
+        let picture = small.shot(&full().without::<ToneBands>());
         assert!(small.ran(ComicsStage::Stylize));
         assert_eq!(spread(&picture), 0, "a wall at {distance}");
         let [found, before] = [&picture, &original].map(|picture| picture.get_pixel(0, 0).0);
@@ -70,7 +65,7 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
 #[test]
 fn all_sky_takes_the_atmosphere_and_nothing_else() {
     let mut small = bare(UVec2::new(40, 30));
-    let picture = drawn(&mut small, &full());
+    let picture = small.shot(&full());
     assert_eq!(small.range(), Some(VisibleDepthRange::Empty));
     assert_eq!(spread(&picture), 0);
     let first = picture.get_pixel(0, 0).0;
@@ -91,7 +86,7 @@ fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
         ..default()
     };
     let style = ComicStyle::new().with(Desaturation::default()).with(linear);
-    let apart = spread(&drawn(&mut small, &style));
+    let apart = spread(&small.shot(&style));
     assert!(apart <= 5, "noise spans {apart} codes");
 }
 
@@ -106,10 +101,7 @@ fn greys_stay_grey_under_the_faithful_equations() {
             unlit(Color::srgb(grey, grey, grey)),
         );
     }
-    small.insert(Camera {
-        clear_color: Color::srgb(0.3, 0.3, 0.3).into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::srgb(0.3, 0.3, 0.3).into();
     for mode in [
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
@@ -121,7 +113,7 @@ fn greys_stay_grey_under_the_faithful_equations() {
             ..default()
         };
         let style = ComicStyle::new().with(Desaturation::SQUARE_ROOT);
-        let picture = drawn(&mut small, &style.with(colorization));
+        let picture = small.shot(&style.with(colorization));
         let mut pixels = picture.pixels();
         let grey = pixels.all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
         assert!(grey, "{mode:?} tinted a grey");
@@ -138,7 +130,7 @@ fn bright_light_grows_with_its_gain() {
         let light = Color::linear_rgb(gain, 0.4 * gain, 0.1 * gain);
         wall(&mut small, 30.0, 4.0, unlit(light));
         wall(&mut small, 1.0, 2.0, unlit(Color::WHITE));
-        drawn(&mut small, &full());
+        small.shot(&full());
         let (_, output) = small.pass();
         let red = output.pixels[0][0];
         assert!(
@@ -167,7 +159,7 @@ fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
         ..unlit(Color::srgba(0.9, 0.1, 0.1, 0.5))
     };
     wall(&mut small, 0.5, 0.9, pane);
-    let picture = drawn(&mut small, &ComicStyle::new().with(Desaturation::default()));
+    let picture = small.shot(&ComicStyle::new().with(Desaturation::default()));
     let saturation = |x: u32| {
         let [r, g, b, _] = picture.get_pixel(x, 20).0;
         r.max(g).max(b) - r.min(g).min(b)

@@ -39,8 +39,7 @@ fn assert_stays(small: &mut Small, style: ComicStyle) {
         if let Some(tells) = tells {
             shift(small.world(), by, tells);
         }
-        small.settle();
-        let picture = small.picture();
+        let picture = small.settle().picture();
         if tells.is_some() {
             shift(small.world(), -by, false);
         }

@@ -73,22 +73,11 @@ fn every_pixel_matches_the_reference() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Gives the camera a viewport.
-pub fn see_in(small: &mut Small, [x, y, width, height]: [u32; 4]) {
-    let mut entity = small.camera_mut();
-    let mut camera = entity.get_mut::<Camera>().expect("a camera");
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(x, y),
-        physical_size: UVec2::new(width, height),
-        ..default()
-    });
-}
-
 #[test]
 fn a_viewport_is_a_picture_of_its_own() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     let viewport = [11, 5, 43, 30];
-    see_in(&mut small, viewport);
+    small.see_in(viewport);
     for style in STYLES {
         assert_matches_the_reference(&mut small, at(5.0, style), 5.0, Some(viewport));
     }
@@ -99,10 +88,7 @@ fn a_viewport_is_a_picture_of_its_own() {
 #[test]
 fn a_transparent_background_stays() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
-    small.insert(Camera {
-        clear_color: Color::NONE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::NONE.into();
     for style in STYLES {
         assert_matches_the_reference(&mut small, at(4.0, style), 4.0, None);
         let (read, wrote) = small.pass();
@@ -111,12 +97,6 @@ fn a_transparent_background_stays() {
             assert!(read[3] > 0.0 || *wrote == [0.0; 4], "{style:?}: {wrote:?}");
         }
     }
-}
-
-pub fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
-    small.style(style);
-    small.settle();
-    small.picture()
 }
 
 /// A red figure before stripes of blue and green.
@@ -151,12 +131,12 @@ pub fn figure(small: &mut Small, near: f32, far: f32) {
 /// its border, which is part figure. Gives the largest code of red beside it, and the number of
 /// pixels that change.
 fn bleeding(small: &mut Small, style: FocusStyle) -> (u8, usize) {
-    let plain = shot(small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     let s = Focus {
         radius: 8.0,
         ..at(5.0, style)
     };
-    let picture = shot(small, &ComicStyle::new().with(s));
+    let picture = small.shot(&ComicStyle::new().with(s));
     assert!(small.ran(ComicsStage::of::<Focus>()));
     let (mut inside, mut changed, mut red) = (0, 0, 0);
     for (a, b) in plain.pixels().zip(picture.pixels()) {
@@ -199,11 +179,8 @@ fn a_sharp_figure_does_not_bleed() {
 fn an_unsharp_figure_keeps_its_outline() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     figure(&mut small, 5.0, 60.0);
-    let plain = shot(&mut small, &ComicStyle::new());
-    let blurred = shot(
-        &mut small,
-        &ComicStyle::new().with(at(60.0, FocusStyle::Blur)),
-    );
+    let plain = small.shot(&ComicStyle::new());
+    let blurred = small.shot(&ComicStyle::new().with(at(60.0, FocusStyle::Blur)));
     for (a, b) in plain.pixels().zip(blurred.pixels()) {
         assert!(a.0[0] == 255 || a == b, "the background");
     }
@@ -216,7 +193,7 @@ fn blur_grows_with_the_distance_from_the_focus() {
     figure(&mut small, 5.0, 60.0);
     let mut contrast = |focus_at: f32| {
         let s = at(focus_at, FocusStyle::Blur);
-        let picture = shot(&mut small, &ComicStyle::new().with(s));
+        let picture = small.shot(&ComicStyle::new().with(s));
         let greens: Vec<f64> = (6..66).map(|x| linear(&picture, x, 4)[1]).collect();
         let mean = greens.iter().sum::<f64>() / greens.len() as f64;
         greens.iter().map(|g| (g - mean).powi(2)).sum::<f64>()
@@ -242,14 +219,14 @@ fn the_focus_follows_an_object() {
         let place = eye.transform_point(Vec3::new(0.4, 0.2, -distance));
         let moved = Transform::from_translation(place);
         small.world().entity_mut(hero).insert(moved);
-        shot(small, &ComicStyle::new().with(own))
+        small.shot(&ComicStyle::new().with(own))
     };
     small.insert(EffectTarget::new(hero));
     let mut seen = Vec::new();
     for distance in [2.0, 5.0, 40.0] {
         let followed = with_target(&mut small, distance);
         let fixed = ComicStyle::new().with(at(distance, FocusStyle::Blur));
-        let fixed = shot(&mut small, &fixed);
+        let fixed = small.shot(&fixed);
         let pairs = followed.as_raw().iter().zip(fixed.as_raw());
         let apart = pairs.map(|(a, b)| a.abs_diff(*b)).max();
         // The distance is rounded on its way through the world.
@@ -258,10 +235,7 @@ fn the_focus_follows_an_object() {
     }
     assert!(seen[0] != seen[1] && seen[1] != seen[2]);
     let behind = with_target(&mut small, -5.0);
-    let fixed = shot(
-        &mut small,
-        &ComicStyle::new().with(at(3.0, FocusStyle::Blur)),
-    );
+    let fixed = small.shot(&ComicStyle::new().with(at(3.0, FocusStyle::Blur)));
     assert_eq!(behind, fixed);
 }
 
@@ -275,8 +249,8 @@ fn the_middle_of_the_view_is_in_focus() {
     });
     for distance in [5.0, 50.0] {
         figure(&mut small, distance, 600.0);
-        let plain = shot(&mut small, &ComicStyle::new());
-        let picture = shot(&mut small, &style);
+        let plain = small.shot(&ComicStyle::new());
+        let picture = small.shot(&style);
         let middle = plain
             .pixels()
             .zip(picture.pixels())
@@ -301,10 +275,10 @@ fn the_focus_of_the_middle_is_steady() {
         (left, right)
     };
     figure(&mut small, 5.0, 600.0);
-    let far = shot(&mut small, &style);
+    let far = small.shot(&style);
     let wire = (Cuboid::new(0.017, 4.0, 0.001), unlit(Color::BLACK));
     let wire = small.put(wire.0, wire.1, Transform::from_xyz(0.0087, 0.0, -1.0));
-    let with_wire = shot(&mut small, &style);
+    let with_wire = small.shot(&style);
     assert!(with_wire != far, "the wire is seen");
     assert!(beside(&with_wire) == beside(&far));
     small.world().despawn(wire);
@@ -324,7 +298,7 @@ fn the_focus_of_the_middle_is_steady() {
     assert!(first != last);
     small.restart(Msaa::Off);
     figure(&mut small, 50.0, 600.0);
-    assert!(shot(&mut small, &style) == last);
+    assert!(small.shot(&style) == last);
     assert_eq!(small.errors(), 0);
 }
 
@@ -345,9 +319,9 @@ fn an_orthographic_view_has_a_focus() {
         }
         let back = Transform::from_xyz(0.0, 0.0, -distance - 0.01);
         small.put(Rectangle::new(100.0, 100.0), unlit(Color::BLACK), back);
-        let plain = shot(small, &ComicStyle::new());
+        let plain = small.shot(&ComicStyle::new());
         let s = ComicStyle::new().with(at(100.0, FocusStyle::Blur));
-        (plain, shot(small, &s))
+        (plain, small.shot(&s))
     };
     let reference = 0.5 * 48.0 / 22.5f32.to_radians().tan();
     for sharp in [100.0, 100.0 - 0.14 * reference, 100.0 + 0.14 * reference] {

@@ -1,7 +1,7 @@
 //! Focus by dots and by lines.
 
 use crate::{
-    focus::{at, figure, shot},
+    focus::{at, figure},
     prelude::*,
 };
 
@@ -19,12 +19,12 @@ fn dots_keep_the_mean_light() {
     let wall = Transform::from_xyz(0.0, 0.0, -20.0);
     let colour = Color::linear_rgb(0.55, 0.3, 0.12);
     small.put(Rectangle::new(100.0, 100.0), unlit(colour), wall);
-    let plain = shot(&mut small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     let count = f64::from(SIZE.x * SIZE.y);
     let mut spreads = Vec::new();
     for focus_at in [20.0, 12.0, 8.0, 2.0] {
         let style = ComicStyle::new().with(at(focus_at, FocusStyle::Dots));
-        let picture = shot(&mut small, &style);
+        let picture = small.shot(&style);
         if focus_at == 20.0 {
             assert_eq!(picture, plain);
         }
@@ -68,7 +68,7 @@ fn lines_fade_out_of_focus() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
         figure(&mut small, 5.0, 60.0);
-        let bare = shot(&mut small, &ComicStyle::new());
+        let bare = small.shot(&ComicStyle::new());
         let lines = ComicStyle::new().with(Outlines {
             width: 3.0,
             silhouettes: Some(Silhouettes::default()),
@@ -76,11 +76,11 @@ fn lines_fade_out_of_focus() {
             objects: None,
             ..default()
         });
-        let whole = shot(&mut small, &lines);
+        let whole = small.shot(&lines);
         let mut inked = Vec::new();
         for focus_at in [5.0, 7.5, 10.0, 12.0, 60.0] {
             let style = lines.clone().with(at(focus_at, FocusStyle::Lines));
-            let picture = shot(&mut small, &style);
+            let picture = small.shot(&style);
             if focus_at == 5.0 {
                 assert_eq!(picture, whole);
             }
@@ -100,7 +100,7 @@ fn lines_fade_out_of_focus() {
 fn lines_become_thinner_and_fainter() {
     let mut small = Small::new(LINED, Msaa::Off);
     figure(&mut small, 5.0, 60.0);
-    let bare = shot(&mut small, &ComicStyle::new());
+    let bare = small.shot(&ComicStyle::new());
     let lines = ComicStyle::new().with(Outlines {
         width: 8.0,
         silhouettes: Some(Silhouettes::default()),
@@ -108,7 +108,7 @@ fn lines_become_thinner_and_fainter() {
         objects: None,
         ..default()
     });
-    let mut of = |style: &ComicStyle| ink(&shot(&mut small, style)) - ink(&bare);
+    let mut of = |style: &ComicStyle| ink(&small.shot(style)) - ink(&bare);
     let whole = of(&lines);
     // Half of the ramp from 0.15 to 1.15.
     let half = of(&lines

@@ -77,15 +77,12 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
     let steps = blocks(&page, "ron");
     assert!(steps.len() >= 5, "{} steps", steps.len());
     let mut small = Small::new(size(), Msaa::Off);
-    small.settle();
-    let mut last = small.picture();
+    let mut last = small.settle().picture();
     for (i, step) in steps.iter().enumerate() {
         let style =
             ComicStyle::from_ron(step).unwrap_or_else(|error| panic!("step {}: {error}", i + 1));
         assert_eq!(style, style.sanitized(), "step {} is in its ranges", i + 1);
-        small.style(&style);
-        small.settle();
-        let picture = small.picture();
+        let picture = small.shot(&style);
         assert_ne!(picture, last, "step {} changes nothing", i + 1);
         last = picture;
     }

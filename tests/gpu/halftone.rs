@@ -11,17 +11,10 @@ use bevy_comics_testkit::{
         moire_of_inks, tone_error,
     },
 };
-use image::RgbaImage;
 
 use crate::{pictures::assert_pass_matches_the_reference, prelude::*};
 
 const SAMPLINGS: [ScreenSampling; 2] = [ScreenSampling::Pixel, ScreenSampling::Cell];
-
-/// The picture in a style.
-pub fn shot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
-    small.style(style);
-    small.settle().picture()
-}
 
 /// 11 tones, 6 shapes, 5 sizes of cells, 4 angles: the mean of a flat area is its tone. Fewer are
 /// rendered, by `rendered_flats_have_their_tone`.
@@ -175,7 +168,7 @@ fn flat() -> Small {
 fn mean_lights(small: &mut Small, [r, g, b]: [f32; 3], s: Halftone) -> [[f64; 3]; 2] {
     fill(small, Color::linear_rgb(r, g, b));
     [ComicStyle::new(), ComicStyle::new().with(s)].map(|style| {
-        let picture = shot(small, &style);
+        let picture = small.shot(&style);
         let (width, height) = picture.dimensions();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         [0, 1, 2].map(|c| mean(pixels.clone().map(|(x, y)| linear(&picture, x, y)[c])))
@@ -335,7 +328,7 @@ fn assert_modes(small: &mut Small, samplings: [&[ScreenSampling]; 4]) {
 fn viewports_are_pages_or_parts_of_one() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     let viewport = [11, 5, 29, 20];
-    view_part(&mut small, viewport);
+    small.see_in(viewport);
     for anchor in [ScreenAnchor::View, ScreenAnchor::Window] {
         for sampling in SAMPLINGS {
             let s = Halftone {
@@ -348,23 +341,6 @@ fn viewports_are_pages_or_parts_of_one() {
             assert_pass_matches_the_reference(&mut small, &screened(s), Some(viewport), &what);
         }
     }
-}
-
-/// Draws to a part of the target: x, y, width, height.
-pub fn view_part(small: &mut Small, [x, y, width, height]: [u32; 4]) {
-    let entity = small.camera;
-    let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(x, y),
-        physical_size: UVec2::new(width, height),
-        ..default()
-    });
-}
-
-/// The largest difference of two pictures, in codes.
-pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
-    let pairs = a.as_raw().iter().zip(b.as_raw());
-    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
 /// Too fine for the screen: plain tones, the picture itself with ideal inks. Settings out of
@@ -389,7 +365,7 @@ fn impossible_cell_sizes_show_a_picture() {
                 shape,
                 ..ideal()
             };
-            let picture = shot(&mut small, &ComicStyle::new().with(s));
+            let picture = small.shot(&ComicStyle::new().with(s));
             // 2.5 and 6 logical pixels, and 40: 4 physical ones.
             if cell_size != 3e38 && shape != grains {
                 assert!(apart(&picture, &plain) <= 1, "{cell_size}, {shape:?}");
@@ -451,7 +427,7 @@ pub fn covered(small: &mut Small, style: &ComicStyle) -> Vec<bool> {
             objects: None,
             ..default()
         };
-        shot(small, &style.clone().with(outlines))
+        small.shot(&style.clone().with(outlines))
     });
     let pairs = black.pixels().zip(white.pixels());
     pairs
@@ -497,7 +473,7 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
         for which in filters {
             filter(&mut small, *which);
         }
-        let picture = shot(&mut small, style);
+        let picture = small.shot(style);
         assert_eq!(small.errors(), 0);
         picture
     };
@@ -517,7 +493,7 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
     }
     // Each of them does something here.
     small.restart(Msaa::Off);
-    let mut before = shot(&mut small, &ComicStyle::new().with(Outlines::default()));
+    let mut before = small.shot(&ComicStyle::new().with(Outlines::default()));
     for which in 0..3 {
         filter(&mut small, which);
         let after = small.settle().picture();

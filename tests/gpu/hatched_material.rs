@@ -8,9 +8,10 @@ use bevy::{
 use bevy_comics_testkit::reference::hatching::Hatch;
 
 use crate::{
-    hatching::{EXTREMES, differ, extreme, mean},
+    hatching::{EXTREMES, differ, extreme},
+    line_scenes::mean,
     prelude::*,
-    ramp::{MODES, apart, bright, drawn, full, put, room, set_light, sun},
+    ramp::{MODES, bright, drawn, full, put, room, set_light, sun},
 };
 
 pub const SIZE: UVec2 = UVec2::new(160, 160);
@@ -169,10 +170,7 @@ pub struct WhiteRoom {
 impl WhiteRoom {
     pub fn new() -> Self {
         let mut small = room(SIZE, 0.1);
-        small.insert(Camera {
-            clear_color: Color::WHITE.into(),
-            ..default()
-        });
+        small.camera_settings().clear_color = Color::WHITE.into();
         let sun = light_from(&mut small, Vec3::Z, 0.6);
         Self { small, sun }
     }

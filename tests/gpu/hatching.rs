@@ -6,7 +6,7 @@ use bevy_comics_testkit::reference::{
     hatching::{Hatch, Surface},
 };
 
-use crate::prelude::*;
+use crate::{line_scenes::mean, prelude::*};
 
 pub const SIZE: UVec2 = UVec2::new(160, 120);
 /// Walls that are turned by up to 60 degrees fill the view.
@@ -73,10 +73,6 @@ fn darkness(small: &Small) -> Vec<f64> {
 pub fn covers(small: &mut Small, s: Hatching) -> Vec<f64> {
     small.style(&ComicStyle::new().with(s));
     darkness(small.settle())
-}
-
-pub fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 pub fn least_and_most(values: &[f64]) -> [f64; 2] {

@@ -93,8 +93,7 @@ fn strips() -> Small {
 }
 
 fn drawn(small: &mut Small, width: f32, paper: Paper) -> image::RgbaImage {
-    small.style(&outlined(silhouettes(width)).with(paper));
-    small.settle().picture()
+    small.shot(&outlined(silhouettes(width)).with(paper))
 }
 
 /// Ink of every row, for each of the edges.
@@ -218,8 +217,7 @@ fn dots_keep_their_mean_tone(cases: impl Iterator<Item = (f32, ScreenShape)>) {
         };
         let mut shown = |spread: f32| {
             let style = ComicStyle::new().with(halftone).with(plain(spread, 0.0));
-            small.style(&style);
-            small.settle();
+            small.style(&style).settle();
             let (_, after) = small.pass();
             let reds = after.pixels.iter().map(|p| f64::from(p[0]));
             reds.collect::<Vec<f64>>()

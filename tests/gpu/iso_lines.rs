@@ -20,9 +20,7 @@ fn every_8(field: IsoField) -> IsoLines {
 }
 
 fn draw(small: &mut Small, lines: IsoLines) -> image::RgbaImage {
-    small.style(&ComicStyle::new().with(lines));
-    small.settle();
-    small.picture()
+    small.shot(&ComicStyle::new().with(lines))
 }
 
 /// Checks where the middle of the ink near a place along a row of pixels is, and how much there is
@@ -216,8 +214,7 @@ fn floors_to_the_horizon_are_finite_and_clear() {
                     step,
                     ..every_8(field)
                 };
-                small.style(&ComicStyle::new().with(lines));
-                small.settle();
+                small.style(&ComicStyle::new().with(lines)).settle();
                 let (before, after) = small.pass();
                 assert!(
                     after.pixels.iter().flatten().all(|v| v.is_finite()),

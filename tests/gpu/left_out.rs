@@ -20,11 +20,6 @@ fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, SkipReason)>) {
     (ran, left)
 }
 
-fn has_prepass(small: &Small) -> bool {
-    let world = small.headless.app.world();
-    world.get::<DepthPrepass>(small.camera).is_some()
-}
-
 fn remove<C: Component>(small: &mut Small) {
     small.camera_mut().remove::<C>();
     small.settle();
@@ -41,7 +36,7 @@ fn a_camera_without_styles_costs_nothing() {
         small.settle();
         let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
         assert!(diagnostics.cameras.is_empty());
-        assert!(!has_prepass(&small) && small.depth().is_none());
+        assert!(!small.has::<DepthPrepass>() && small.depth().is_none());
     }
 }
 
@@ -67,7 +62,10 @@ fn one_atmosphere_for_all_reads_no_depth() {
             depth_weight,
             ..default()
         };
-        assert_eq!(has_prepass(small.insert(flats).settle()), reads_depth);
+        assert_eq!(
+            small.insert(flats).settle().has::<DepthPrepass>(),
+            reads_depth
+        );
     }
 }
 
@@ -143,7 +141,7 @@ fn what_changes_nothing_is_left_out() {
         assert!(left.contains(&(stage, SkipReason::Negligible)), "{stage:?}");
     }
     assert!(left.contains(&(ComicsStage::Stylize, SkipReason::NothingToDraw)));
-    assert!(!has_prepass(&small));
+    assert!(!small.has::<DepthPrepass>());
     assert_eq!(small.picture(), original);
 }
 
@@ -187,7 +185,7 @@ fn outlines_run_what_they_need_and_no_more() {
         assert!(small.ran(stage), "{stage:?}");
     }
     remove::<Outlines>(&mut small);
-    assert!(!has_prepass(&small));
+    assert!(!small.has::<DepthPrepass>());
     // Tone bands alone read no depth.
     small.insert(ToneBands::default()).settle();
     let (ran, _) = stages(&small);

@@ -33,8 +33,7 @@ fn show(small: &mut Small, distance: f32) {
     let margin = 8.0..12.0;
     put_level(small, 0.0..0.0, margin.clone(), 5);
     put_level(small, margin, 50.0..50.0, 3);
-    small.insert(away(distance));
-    small.settle();
+    small.insert(away(distance)).settle();
     small.settle();
 }
 
@@ -81,10 +80,7 @@ fn levels_keep_their_outline_while_they_fade() {
 fn there_are_no_holes_with_depth_alone() {
     let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
     let background = Color::srgb(0.1, 0.2, 0.9);
-    small.insert(Camera {
-        clear_color: background.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = background.into();
     small.style(&ComicStyle::new().with(Desaturation {
         amount: 0.01,
         ..default()
@@ -144,8 +140,7 @@ fn what_fades_to_nothing_has_no_lines_in_the_end() {
             small.on(camera).insert(away(distance));
         }
         small.settle();
-        small.settle();
-        let picture = small.picture();
+        let picture = small.settle().picture();
         [0, 1].map(|half: u32| {
             let pixels = picture.enumerate_pixels().filter(|(x, ..)| x / 96 == half);
             let reds: Vec<_> = pixels.map(|(.., pixel)| pixel.0[0]).collect();

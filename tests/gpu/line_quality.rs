@@ -128,8 +128,7 @@ impl Pictures {
         let mut lined = Small::new(size, Msaa::Off);
         fine.insert((DepthPrepass, NormalPrepass));
         for (small, lines) in [(&mut fine, fine_lines), (&mut lined, scored(2.0))] {
-            small.style(&ComicStyle::new().with(lines));
-            small.settle();
+            small.style(&ComicStyle::new().with(lines)).settle();
         }
         Self { fine, lined, size }
     }

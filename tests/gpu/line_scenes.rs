@@ -13,9 +13,7 @@ impl Small {
 
     /// The picture in a style that has no effect but these outlines.
     pub fn outlined(&mut self, outlines: Outlines) -> RgbaImage {
-        self.style(&ComicStyle::new().with(outlines));
-        self.settle();
-        self.picture()
+        self.shot(&ComicStyle::new().with(outlines))
     }
 
     /// Starts over with an empty perspective view along -z. It is 90 degrees high: at a distance of
@@ -47,6 +45,21 @@ impl Small {
     pub fn camera_settings(&mut self) -> Mut<'_, Camera> {
         let camera = self.camera;
         self.world().get_mut(camera).expect("a camera")
+    }
+
+    /// Draws to a part of the target: x, y, width, height.
+    pub fn see_in(&mut self, [x, y, width, height]: [u32; 4]) {
+        self.camera_settings().viewport = Some(Viewport {
+            physical_position: UVec2::new(x, y),
+            physical_size: UVec2::new(width, height),
+            ..default()
+        });
+    }
+
+    /// Whether the camera has a component.
+    pub fn has<C: Component>(&self) -> bool {
+        let world = self.headless.app.world();
+        world.entity(self.camera).contains::<C>()
     }
 
     /// The object id of every pixel.

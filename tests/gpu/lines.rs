@@ -24,10 +24,7 @@ fn plane(size: f32) -> Plane3d {
 fn show<const N: usize>(small: &mut Small, msaa: Msaa, things: [(Mesh, Transform); N]) {
     small.restart(msaa);
     small.clear();
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::WHITE.into();
     for (mesh, at) in things {
         put(small, mesh, Color::WHITE, at);
     }
@@ -36,8 +33,7 @@ fn show<const N: usize>(small: &mut Small, msaa: Msaa, things: [(Mesh, Transform
 /// The inked pixels of the next picture.
 fn ink(small: &mut Small, contours: Contours) -> Vec<(u32, u32)> {
     small.insert(contours);
-    small.settle();
-    let picture = small.picture();
+    let picture = small.settle().picture();
     let pixels = picture.enumerate_pixels();
     let inked = pixels.filter(|(_, _, pixel)| pixel.0[0] < 200);
     inked.map(|(x, y, _)| (x, y)).collect()

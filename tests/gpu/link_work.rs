@@ -72,8 +72,7 @@ fn default_lines_load_some_windows() {
 /// those of the styles before it in the same app. Each runs once in a frame, but for
 /// `comics_link_lines`, which continues lines by eight cracks.
 fn kernels(small: &mut Small, outlines: Outlines) -> BTreeSet<String> {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
+    small.style(&ComicStyle::new().with(outlines)).settle();
     let cache = small.render_world().resource::<PipelineCache>();
     let labels = cache.pipelines().map(|p| label(&p.descriptor));
     let names = labels.filter_map(|label| label.strip_prefix("comics_"));

@@ -49,8 +49,7 @@ fn lines(continuity: f32, taper: f32) -> Outlines {
 
 /// The number of cracks of the line.
 fn length(small: &mut Small, outlines: Outlines) -> usize {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
+    small.style(&ComicStyle::new().with(outlines)).settle();
     let cracks = small.cracks().expect("lines");
     cracks.words.iter().filter(|word| word[1] & 7 != 0).count()
 }

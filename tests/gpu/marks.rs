@@ -175,8 +175,7 @@ fn the_outline_lies_over_the_effects() {
     let style = ComicStyle::default()
         .with(Outlines::default())
         .with(Desaturation::default());
-    small.style(&style);
-    let before = small.settle().picture();
+    let before = small.shot(&style);
     small.on(square).insert(green(1.0));
     let after = small.settle().picture();
     let pixels = after.enumerate_pixels();

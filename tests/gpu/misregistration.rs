@@ -3,7 +3,7 @@
 use bevy_comics_testkit::reference::misregistration::strays;
 
 use crate::{
-    halftone::{apart, assert_background_stays, assert_lines_stay, shot, view_part},
+    halftone::{assert_background_stays, assert_lines_stay},
     pictures::assert_pass_matches_the_reference,
     prelude::*,
 };
@@ -23,13 +23,13 @@ const STILL: Misregistration = Misregistration {
 #[test]
 fn plates_in_register_are_the_picture() {
     let mut small = Small::new(size(), Msaa::Off);
-    let plain = shot(&mut small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     for black_generation in [0.0, 0.5, 1.0] {
         let s = Misregistration {
             black_generation,
             ..STILL
         };
-        let picture = shot(&mut small, &ComicStyle::new().with(s));
+        let picture = small.shot(&ComicStyle::new().with(s));
         assert!(small.ran(ComicsStage::of::<Misregistration>()));
         assert!(apart(&picture, &plain) <= 1);
     }
@@ -40,14 +40,14 @@ fn plates_in_register_are_the_picture() {
 #[test]
 fn a_moved_plate_is_the_moved_picture() {
     let mut small = Small::new(size(), Msaa::Off);
-    let colors = shot(&mut small, &ComicStyle::new());
+    let colors = small.shot(&ComicStyle::new());
     let mut moved = |channel: usize, by: Vec2| {
         let mut s = Misregistration {
             black_generation: 0.0,
             ..STILL
         };
         *[&mut s.cyan, &mut s.magenta, &mut s.yellow][channel] = by;
-        shot(&mut small, &ComicStyle::new().with(s))
+        small.shot(&ComicStyle::new().with(s))
     };
     for channel in 0..3 {
         let moved = moved(channel, Vec2::new(3.0, -2.0));
@@ -96,7 +96,7 @@ fn every_pixel_matches_the_reference() {
         assert_pass_matches_the_reference(&mut small, &style, None, what);
     }
     let viewport = [11, 5, 43, 30];
-    view_part(&mut small, viewport);
+    small.see_in(viewport);
     assert_pass_matches_the_reference(&mut small, &style, Some(viewport), "viewport");
     assert_eq!(small.errors(), 0);
 }
@@ -133,10 +133,10 @@ fn lines_stay_in_place() {
 #[test]
 fn comparisons_and_debug_views_see_through_the_passes() {
     let mut small = Small::new(size(), Msaa::Off);
-    let plain = shot(&mut small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     let alone = ComicStyle::new().with(Desaturation::default());
     let style = alone.clone().with(Misregistration::default());
-    let styled = shot(&mut small, &style);
+    let styled = small.shot(&style);
     small.insert(SplitView::default());
     let split = small.settle().picture();
     for y in 0..64 {
@@ -150,8 +150,8 @@ fn comparisons_and_debug_views_see_through_the_passes() {
         DebugView::RawRange,
     ] {
         small.insert(view);
-        let one = shot(&mut small, &alone);
-        assert_eq!(one, shot(&mut small, &style), "{view:?}");
+        let one = small.shot(&alone);
+        assert_eq!(one, small.shot(&style), "{view:?}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -168,7 +168,7 @@ fn plates_drift_from_page_to_page() {
         })
     };
     let pages = |small: &mut Small, rate: f32| {
-        let mut film = vec![shot(small, &strayed(rate))];
+        let mut film = vec![small.shot(&strayed(rate))];
         for _ in 0..30 {
             small.headless.step(1);
             film.push(small.picture());
@@ -178,9 +178,8 @@ fn plates_drift_from_page_to_page() {
     assert_eq!(pages(&mut small, 0.0), 1);
     // A new page in every fifth frame.
     assert_eq!(pages(&mut small, 12.0), 7);
-    let before = shot(&mut small, &strayed(0.0));
-    let entity = small.camera;
-    small.world().trigger(CameraCut { entity });
+    let before = small.shot(&strayed(0.0));
+    small.cut();
     assert_ne!(small.settle().picture(), before);
     assert_eq!(small.errors(), 0);
 }

@@ -8,7 +8,7 @@ use bevy_comics_testkit::{
     screens::ideal,
 };
 
-use crate::{halftone::shot, prelude::*};
+use crate::prelude::*;
 
 const SIZE: UVec2 = UVec2::new(120, 90);
 
@@ -23,10 +23,7 @@ fn spot() -> Halftone {
 }
 
 fn printed(small: &mut Small, anchor: ScreenAnchor) -> image::RgbaImage {
-    shot(
-        small,
-        &ComicStyle::new().with(Halftone { anchor, ..spot() }),
-    )
+    small.shot(&ComicStyle::new().with(Halftone { anchor, ..spot() }))
 }
 
 /// A grey board of 80 by 60 pixels in front of a view in which a unit is a pixel.
@@ -65,7 +62,7 @@ fn inner() -> impl Iterator<Item = (u32, u32)> {
 #[test]
 fn dots_lie_on_their_object() {
     let (mut small, board) = board();
-    let plain = shot(&mut small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     let tone = 1.0 - linear(&plain, 60, 45)[0];
     let turned = Quat::from_rotation_z(0.4);
     for at in [
@@ -89,7 +86,7 @@ fn dots_lie_on_their_object() {
                 anchor: ScreenAnchor::Object,
                 ..spot()
             };
-            let picture = shot(&mut small, &ComicStyle::new().with(s));
+            let picture = small.shot(&ComicStyle::new().with(s));
             assert!(small.ran(ComicsStage::of::<Halftone>()));
             let mut inked = 0;
             for (x, y) in inner() {

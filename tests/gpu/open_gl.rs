@@ -179,14 +179,12 @@ fn check_multisampled(is_tried: impl Fn(bool, &str) -> bool) {
             .into_iter()
             .filter(|(name, _)| is_tried(by_game, name));
         for (name, style) in tried {
-            app.style(&style());
-            app.settle();
+            app.style(&style()).settle();
             assert_eq!(app.errors(), 0, "{name}");
             assert!(!app.ran(ComicsStage::DepthRange), "{name}");
             assert!(!app.ran(ComicsStage::FindLines), "{name}");
         }
-        app.style(&presets::POP_POSTER.style());
-        let styled = changed(&plain, &app.settle().picture());
+        let styled = changed(&plain, &app.shot(&presets::POP_POSTER.style()));
         assert!(styled > 0.1, "{styled}");
     }
 }
@@ -199,8 +197,7 @@ fn check_groups(groups: impl Iterator<Item = Group>) {
     for (name, style) in groups {
         let [vulkan, gl] = apps.each_mut().map(|app| {
             let style = style();
-            app.style(&style);
-            let picture = app.settle().picture();
+            let picture = app.shot(&style);
             assert_drawn(app, &style, name);
             picture
         });
@@ -257,8 +254,7 @@ fn check_webgl2(api: wgpu::Backends) {
     assert_eq!(app.errors(), 0, "{api:?}: of the engine");
     for (name, style) in GROUPS {
         let style = style();
-        app.style(&style);
-        let picture = app.settle().picture();
+        let picture = app.shot(&style);
         assert_drawn(&app, &style, name);
         assert_eq!(app.errors(), 0, "{api:?}: {name}");
         let styled = changed(&plain, &picture);

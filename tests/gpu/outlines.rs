@@ -17,8 +17,7 @@ pub fn removed(small: &Small) -> Vec<f32> {
 
 /// The ink of every pixel under outlines.
 pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
-    small.style(&ComicStyle::default().with(outlines));
-    small.settle();
+    small.style(&ComicStyle::default().with(outlines)).settle();
     removed(small)
 }
 

@@ -162,8 +162,7 @@ fn an_effect_of_a_game_thins_lines() {
     }
     // Of the left and of the right half.
     let ink = |small: &mut Small, style: ComicStyle| {
-        small.style(&style);
-        let picture = small.settle().picture();
+        let picture = small.shot(&style);
         [0..size.x / 2, size.x / 2..size.x].map(|columns| {
             let pixels = columns.flat_map(|x| (0..size.y).map(move |y| (x, y)));
             black_ink(&picture, pixels)

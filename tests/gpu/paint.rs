@@ -3,7 +3,6 @@
 use bevy_comics_testkit::reference::{paint::Scene, view::pixel_depth};
 
 use crate::{
-    focus::{see_in, shot},
     halftone::covered,
     pictures::assert_later_pass_matches_the_reference,
     prelude::*,
@@ -69,7 +68,7 @@ fn every_pixel_matches_the_reference() {
 fn a_viewport_is_a_picture_of_its_own() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     let viewport = [11, 5, 43, 30];
-    see_in(&mut small, viewport);
+    small.see_in(viewport);
     let colors = ComicStyle::new().with(Desaturation::default());
     for form in FORMS {
         assert_matches_the_reference(&mut small, &colors, paint(form), Some(viewport));
@@ -82,10 +81,7 @@ fn a_viewport_is_a_picture_of_its_own() {
 #[test]
 fn a_transparent_background_stays() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Sample4);
-    small.insert(Camera {
-        clear_color: Color::NONE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::NONE.into();
     let colors = ComicStyle::new().with(Desaturation::default());
     for form in FORMS {
         let s = Paint {
@@ -117,9 +113,9 @@ fn one_colour_stays() {
         small.clear();
         let at = Transform::from_xyz(0.0, 0.0, -10.0);
         small.put(Rectangle::new(90.0, 90.0), unlit(color), at);
-        let plain = shot(&mut small, &ComicStyle::new());
+        let plain = small.shot(&ComicStyle::new());
         for form in FORMS {
-            let painted = shot(&mut small, &ComicStyle::new().with(paint(form)));
+            let painted = small.shot(&ComicStyle::new().with(paint(form)));
             assert!(small.ran(ComicsStage::of::<Paint>()));
             let pairs = plain.as_raw().iter().zip(painted.as_raw());
             assert!(
@@ -138,13 +134,13 @@ fn an_edge_stays_sharp() {
     let grey = Color::srgb(0.3, 0.3, 0.3);
     let at = Transform::from_xyz(0.0, 0.0, -30.0);
     small.put(Rectangle::new(90.0, 90.0), unlit(grey), at);
-    let plain = shot(&mut small, &ComicStyle::new());
-    let painted = shot(&mut small, &ComicStyle::new().with(paint(PaintKernel::Box)));
+    let plain = small.shot(&ComicStyle::new());
+    let painted = small.shot(&ComicStyle::new().with(paint(PaintKernel::Box)));
     for (a, b) in plain.as_raw().iter().zip(painted.as_raw()) {
         assert!(a.abs_diff(*b) <= 1, "a vertical edge between two pixels");
     }
     let style = ComicStyle::new().with(paint(PaintKernel::Anisotropic));
-    let painted = shot(&mut small, &style);
+    let painted = small.shot(&style);
     for y in 0..40 {
         let ink = |picture: &image::RgbaImage| -> f64 {
             (12..36).map(|x| linear(picture, x, y)[1]).sum()
@@ -173,8 +169,7 @@ fn figures_keep_their_outline() {
             figures,
             ..default()
         };
-        small.style(&ComicStyle::new().with(s));
-        small.settle();
+        small.style(&ComicStyle::new().with(s)).settle();
         let (read, wrote) = small.pass();
         let at = |x: usize| {
             let i = 15 * 40 + x;
@@ -219,8 +214,8 @@ fn debug_views_are_those_of_one_pass() {
     let painted = alone.clone().with(Paint::default());
     for view in [DebugView::DepthMap, DebugView::Saturation] {
         small.insert(view);
-        let one = shot(&mut small, &alone);
-        let two = shot(&mut small, &painted);
+        let one = small.shot(&alone);
+        let two = small.shot(&painted);
         assert_eq!(one, two, "{view:?}");
     }
     assert_eq!(small.errors(), 0);

@@ -149,8 +149,7 @@ fn a_split_screen_is_one_sheet() {
         .world()
         .entity_mut(second)
         .insert((straight, part(half.x, 1)));
-    small.settle();
-    assert_eq!(small.picture(), whole);
+    assert_eq!(small.settle().picture(), whole);
 }
 
 /// With a sheet of its own, a viewport shows what a picture of its size does: grain, rough lines
@@ -188,11 +187,8 @@ fn a_view_can_have_its_own_sheet() {
     });
     for dots in [false, true] {
         for anchor in [PaperAnchor::View, PaperAnchor::Window] {
-            let shot = |small: &mut Small| {
-                small.style(&style(anchor, dots));
-                small.settle().picture()
-            };
-            let (whole, picture) = (shot(&mut alone), shot(&mut small));
+            let style = style(anchor, dots);
+            let (whole, picture) = (alone.shot(&style), small.shot(&style));
             let inside = imageops::crop_imm(&picture, place.x, place.y, part.x, part.y);
             let same = inside.to_image() == whole;
             assert_eq!(same, anchor == PaperAnchor::View, "{anchor:?}, dots {dots}");

@@ -233,8 +233,7 @@ fn assert_speck_is_left_out(mut small: Small, away: f32, bin: impl Fn(f32) -> f3
         ..RangeSmoothing::OFF
     };
     small.insert((map(slow), Transform::from_xyz(0.0, 0.0, away)));
-    let entity = small.camera;
-    small.world().trigger(CameraCut { entity });
+    small.cut();
     small.settle();
     assert_drawn_with_the_walls(&small, away, &bin);
     assert_eq!(small.errors(), 0);

@@ -148,8 +148,7 @@ pub fn assert_pass_matches_the_reference(
     what: &str,
 ) {
     small.insert(VisibleDepthRange::default());
-    small.style(style);
-    small.settle();
+    small.style(style).settle();
     let (input, output) = small.pass();
     let loaded = small.loaded();
     let map = style.depth_map.unwrap_or_default();
@@ -243,8 +242,7 @@ pub fn assert_later_pass_matches_the_reference<E: Effect>(
 ) {
     small.insert(VisibleDepthRange::default());
     let style = before.clone().with(effect);
-    small.style(&style);
-    small.settle();
+    small.style(&style).settle();
     assert!(small.ran(ComicsStage::of::<E>()));
     let (read, wrote) = small.pass();
     let loaded = small.loaded();
@@ -599,10 +597,7 @@ fn tone_bands_match_the_reference() {
 #[test]
 fn every_mode_of_harmony_matches_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);
-    small.insert(Camera {
-        clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::srgba(0.1, 0.2, 0.3, 0.4).into();
     let modes = [
         (HarmonyMode::TwoHues, Equations::Corrected),
         (HarmonyMode::Distance, Equations::Corrected),
@@ -639,17 +634,11 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
     let mut small = Small::new(UVec2::new(90, 60), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
-        small.insert(Camera {
-            viewport: Some(Viewport {
-                physical_position: UVec2::new(13, 7),
-                physical_size: UVec2::new(51, 41),
-                ..default()
-            }),
-            ..default()
-        });
+        let viewport = [13, 7, 51, 41];
+        small.see_in(viewport);
         let style = corrected(ColorizationMode::SquareRoot);
         let styles = [(format!("{msaa:?}"), style)];
-        check(&mut small, Some([13, 7, 51, 41]), styles);
+        check(&mut small, Some(viewport), styles);
     }
 }
 
@@ -691,10 +680,7 @@ fn layers_match_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
-        small.insert(Camera {
-            clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
-            ..default()
-        });
+        small.camera_settings().clear_color = Color::srgba(0.1, 0.2, 0.3, 0.4).into();
         let styles = [(0, false), (3, false), (0, true)].map(|(bands, flip)| {
             let layers = DepthLayers {
                 foreground: DepthLayer {

@@ -71,8 +71,7 @@ fn is_ink(picture: &RgbaImage, x: u32, y: u32) -> bool {
 #[test]
 fn pixels_are_ink_or_as_they_were() {
     let mut small = scene();
-    small.settle();
-    let flat = small.picture();
+    let flat = small.settle().picture();
     let inked = small.outlined(Outlines::PIXELS);
     assert_eq!(colors(&inked).len(), colors(&flat).len() + 1);
     let mut count = 0;

@@ -75,4 +75,6 @@ pub use bevy_comics_testkit::{
     wgsl::Definition,
 };
 
-pub use crate::small::{Object, Small, black_ink, linear, options, size, unlit, with_option};
+pub use crate::small::{
+    Object, Small, apart, black_ink, linear, options, size, unlit, with_option,
+};

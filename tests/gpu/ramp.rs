@@ -105,11 +105,6 @@ pub fn drawn(small: &mut Small) -> RgbaImage {
     picture
 }
 
-pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
-    let pairs = a.as_raw().iter().zip(b.as_raw());
-    pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
-}
-
 /// Pixels that differ by more than this many codes.
 pub fn differ(a: &RgbaImage, b: &RgbaImage, codes: u8) -> usize {
     let pairs = a.pixels().zip(b.pixels());

@@ -5,7 +5,7 @@ use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{apart, bright, drawn, put, room, set_light, sun, with},
+    ramp::{bright, drawn, put, room, set_light, sun, with},
 };
 
 const ORANGE: Color = Color::linear_rgb(0.9, 0.4, 0.1);

@@ -429,9 +429,7 @@ fn check_frames(msaa: Msaa, stands: &[(f32, &[f32])], yaws: impl Iterator<Item =
                     };
                     // Without sections.
                     small.on(wall).insert(MeshSections::NONE);
-                    small.style(&outlined(normals));
-                    small.settle();
-                    by_normals += compare(&small.picture(), &at, proud, aside)[0];
+                    by_normals += compare(&small.shot(&outlined(normals)), &at, proud, aside)[0];
                     controls += 1.0;
                     small.on(wall).remove::<MeshSections>();
                     small.style(&outlined(lines));

@@ -172,11 +172,12 @@ impl Small {
         world.spawn((Object, Mesh3d(mesh), material, at)).id()
     }
 
-    pub fn style(&mut self, style: &ComicStyle) {
+    pub fn style(&mut self, style: &ComicStyle) -> &mut Self {
         let camera = self.camera;
         let world = self.world();
         style.apply(&mut world.commands().entity(camera));
         world.flush();
+        self
     }
 
     /// Renders until a change has reached the picture and the diagnostics: until two frames in turn
@@ -210,6 +211,11 @@ impl Small {
 
     pub fn picture(&mut self) -> image::RgbaImage {
         self.headless.picture()
+    }
+
+    /// The picture in a style.
+    pub fn shot(&mut self, style: &ComicStyle) -> image::RgbaImage {
+        self.style(style).settle().picture()
     }
 
     pub fn ran(&self, stage: ComicsStage) -> bool {
@@ -312,6 +318,12 @@ pub fn linear(picture: &image::RgbaImage, x: u32, y: u32) -> [f64; 3] {
 /// The sum of black ink on white over pixels of a picture: 1 for a pixel that is all ink.
 pub fn black_ink(picture: &image::RgbaImage, pixels: impl Iterator<Item = (u32, u32)>) -> f64 {
     pixels.map(|(x, y)| 1.0 - linear(picture, x, y)[0]).sum()
+}
+
+/// The largest difference of two pictures, in codes.
+pub fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> u8 {
+    let pairs = a.as_raw().iter().zip(b.as_raw());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
 }
 
 /// Adds an effect to a style; `None` adds nothing.

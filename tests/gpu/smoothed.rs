@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{apart, bright, differ, drawn, put, room, set_light, sun, with},
+    ramp::{bright, differ, drawn, put, room, set_light, sun, with},
 };
 
 const SIZE: UVec2 = UVec2::new(128, 128);

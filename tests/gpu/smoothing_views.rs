@@ -26,8 +26,7 @@ fn look(smoothing: Option<RangeSmoothing>) -> ComicStyle {
 
 fn small() -> Small {
     let mut small = Small::new(size(), Msaa::Off);
-    small.style(&look(Some(SLOW)));
-    small.settle();
+    small.style(&look(Some(SLOW))).settle();
     small
 }
 
@@ -39,16 +38,9 @@ fn intrude(small: &mut Small) -> Entity {
 
 /// The picture after the range was reset.
 fn unsmoothed(small: &mut Small) -> image::RgbaImage {
-    small.style(&look(None));
-    small.settle();
-    let picture = small.picture();
+    let picture = small.shot(&look(None));
     small.style(&look(Some(SLOW)));
     picture
-}
-
-fn cut(small: &mut Small) {
-    let entity = small.camera;
-    small.world().trigger(CameraCut { entity });
 }
 
 fn perspective(near: f32, fov: f32) -> Projection {
@@ -67,8 +59,7 @@ fn a_new_view_starts_with_its_own_range_and_then_lags() {
     assert_eq!(smoothed, unsmoothed(&mut small));
     small.settle();
     intrude(&mut small);
-    small.settle();
-    assert_ne!(small.picture(), unsmoothed(&mut small), "it lags");
+    assert_ne!(small.settle().picture(), unsmoothed(&mut small), "it lags");
     assert_eq!(small.errors(), 0);
 }
 
@@ -76,7 +67,7 @@ fn a_new_view_starts_with_its_own_range_and_then_lags() {
 fn a_cut_a_resize_and_another_near_plane_start_anew() {
     type Change = fn(&mut Small);
     let changes: [(&str, Change); 3] = [
-        ("cut", cut),
+        ("cut", Small::cut),
         ("resize", |small| {
             small.headless.resize(size() + UVec2::new(8, 4), 1.0);
             let target = small.headless.render_target();
@@ -92,8 +83,7 @@ fn a_cut_a_resize_and_another_near_plane_start_anew() {
         intrude(&mut small);
         small.settle();
         change(&mut small);
-        small.settle();
-        let anew = small.picture();
+        let anew = small.settle().picture();
         assert_eq!(anew, unsmoothed(&mut small), "{name}");
     }
 }
@@ -120,8 +110,7 @@ fn zooming_does_not_start_anew() {
     small.insert(perspective(PerspectiveProjection::default().near, 0.5));
     small.settle();
     intrude(&mut small);
-    small.settle();
-    assert_ne!(small.picture(), unsmoothed(&mut small));
+    assert_ne!(small.settle().picture(), unsmoothed(&mut small));
 }
 
 /// A perspective projection whose near plane is a plane in view space, as mirrors and
@@ -144,8 +133,7 @@ fn an_oblique_near_plane_that_moves_does_not_start_anew() {
     for moves in [false, true] {
         let mut small = Small::new(size(), Msaa::Off);
         small.insert(mirror(0.1, 0.2));
-        small.style(&look(Some(SLOW)));
-        small.settle();
+        small.style(&look(Some(SLOW))).settle();
         intrude(&mut small);
         for i in 0..5 {
             if moves {
@@ -168,9 +156,7 @@ fn a_lock_holds_the_range_until_it_is_taken_away() {
             smoothing: None,
             ..default()
         };
-        small.style(&with_map(look(None), map));
-        small.settle();
-        small.picture()
+        small.shot(&with_map(look(None), map))
     };
     let background = |p: &image::RgbaImage| *p.get_pixel(3, 60);
     // Locked before the first range: it takes the first one.
@@ -183,8 +169,7 @@ fn a_lock_holds_the_range_until_it_is_taken_away() {
     assert!(!small.ran(ComicsStage::RangeSmoothing));
     assert_ne!(background(&free), background(&first));
     small.world().despawn(intruder);
-    small.settle();
-    assert_eq!(small.picture(), first);
+    assert_eq!(small.settle().picture(), first);
 }
 
 #[test]
@@ -205,9 +190,8 @@ fn a_locked_range_is_no_older_than_the_planes_and_follows_a_cut_once_free() {
 
     small.insert(map(true)).settle();
     intrude(&mut small);
-    cut(&mut small);
-    small.settle();
-    let held = small.picture();
+    small.cut();
+    let held = small.settle().picture();
     small.insert(map(false)).settle();
     let free = small.picture();
     assert_ne!(held, free, "a lock holds through a cut");
@@ -228,8 +212,7 @@ fn wild_settings_are_clamped() {
     let mut small = Small::new(size(), Msaa::Off);
     let mut shoot = |style: &ComicStyle| {
         small.restart(Msaa::Off);
-        small.style(style);
-        small.settle();
+        small.style(style).settle();
         assert_eq!(small.errors(), 0);
         small.picture()
     };

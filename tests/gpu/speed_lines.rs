@@ -4,7 +4,6 @@ use bevy_comics::effect::EffectTarget;
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use crate::{
-    focus::see_in,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -155,7 +154,7 @@ fn assert_lines_of_every_kind(step: usize) {
 fn a_viewport_is_a_picture_of_its_own() {
     let mut small = page();
     let half = UVec2::new(SIZE.x / 2, SIZE.y);
-    see_in(&mut small, [half.x, 0, half.x, half.y]);
+    small.see_in([half.x, 0, half.x, half.y]);
     small.insert(still(SpeedLineKind::Radial)).settle();
     let picture = small.picture();
     let right = image::imageops::crop_imm(&picture, half.x, 0, half.x, half.y).to_image();
@@ -225,11 +224,9 @@ fn lines_follow_an_object() {
     small.insert(Projection::default());
     let behind = Transform::from_xyz(3.0, 2.0, 50.0);
     small.world().entity_mut(hero).insert(behind);
-    small.settle();
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, own)) < CODE);
+    assert!(apart(&small.settle().picture(), &drawing(lines, SIZE, own)) < CODE);
     small.world().despawn(hero);
-    small.settle();
-    assert!(apart(&small.picture(), &drawing(lines, SIZE, own)) < CODE);
+    assert!(apart(&small.settle().picture(), &drawing(lines, SIZE, own)) < CODE);
     assert_eq!(small.errors(), 0);
 }
 
@@ -238,10 +235,7 @@ fn lines_follow_an_object() {
 fn ink_is_opaque_on_nothing() {
     let mut small = Small::new(SIZE, Msaa::Off);
     small.clear();
-    small.insert(Camera {
-        clear_color: Color::NONE.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::NONE.into();
     let lines = SpeedLines {
         color: Color::WHITE,
         ..still(SpeedLineKind::Radial)

@@ -53,10 +53,7 @@ fn view(size: UVec2) -> Small {
 /// The middle of a black ball with smooth normals, under a light from the eye.
 fn ball(light: &ToonLight, size: u32) -> Small {
     let mut small = view(UVec2::splat(size));
-    small.insert(Camera {
-        clear_color: Color::BLACK.into(),
-        ..default()
-    });
+    small.camera_settings().clear_color = Color::BLACK.into();
     // With more triangles, most of them would be smaller than a pixel.
     let mesh = Sphere::new(BALL as f32).mesh().uv(128, 64);
     put(&mut small, mesh, light, Transform::IDENTITY);

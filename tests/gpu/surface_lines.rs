@@ -69,8 +69,7 @@ fn the_colour_is_that_of_the_styled_surface() {
         ..default()
     };
     let style = ComicStyle::default().with(lines(6.0, 0.5)).with(grey);
-    small.style(&style);
-    let picture = small.settle().picture();
+    let picture = small.shot(&style);
     let inside = linear(&picture, 40, 40);
     for x in 18..22 {
         assert_alike(&picture, x, 37, inside.map(|c| 0.5 * c));

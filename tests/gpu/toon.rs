@@ -8,7 +8,7 @@ use bevy::{
 
 use crate::{
     hatched_material::{covers, light_from, plain, tone},
-    hatching::mean,
+    line_scenes::mean,
     prelude::*,
     ramp::{differ, put, room},
 };

@@ -8,7 +8,7 @@ use bevy::{
 use bevy_comics_testkit::reference::rect::rect_light;
 use image::RgbaImage;
 
-use crate::{prelude::*, ramp::apart};
+use crate::prelude::*;
 
 /// The exposure of a camera with default settings.
 fn exposure() -> f32 {

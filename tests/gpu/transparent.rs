@@ -22,16 +22,12 @@ fn small_of(size: UVec2) -> Small {
 /// The same, drawn by a new camera.
 fn again(small: &mut Small, msaa: Msaa) {
     small.restart(msaa);
-    small.insert(Camera {
-        clear_color: ClearColorConfig::Custom(Color::NONE),
-        ..default()
-    });
+    small.camera_settings().clear_color = ClearColorConfig::Custom(Color::NONE);
 }
 
 /// What the pass read and wrote, pixel by pixel.
 fn pass(small: &mut Small, style: &ComicStyle) -> Vec<([f32; 4], [f32; 4])> {
-    small.style(style);
-    small.settle();
+    small.style(style).settle();
     let (read, wrote) = small.pass();
     read.pixels.into_iter().zip(wrote.pixels).collect()
 }

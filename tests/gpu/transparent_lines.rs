@@ -347,8 +347,7 @@ fn it_is_an_object_like_others() {
         amount: 1.0,
         ..Colorization::SEPIA
     };
-    small.style(&ComicStyle::default().with(sepia));
-    small.settle();
+    small.style(&ComicStyle::default().with(sepia)).settle();
     assert!(removed(&small)[middle] != 0.0);
     small.on(glass).insert(NoStyle::default());
     small.settle();
@@ -422,8 +421,7 @@ fn pixels_of_foreign<const PREPASS: bool>(small: &mut Small) -> usize {
     let square = Rectangle::new(1.0, 1.0);
     let mesh = small.put_shared(square, material, Transform::IDENTITY);
     small.on(mesh).insert(DepthWrite::default());
-    small.style(&outlined(Outlines::default()));
-    small.settle();
+    small.style(&outlined(Outlines::default())).settle();
     assert_eq!(small.errors(), 0);
     small.pixels_of(mesh)
 }

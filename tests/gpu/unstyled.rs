@@ -31,8 +31,7 @@ fn orange_cube(small: &mut Small) -> Entity {
 /// For each pixel: the largest change of a component, and the samples, of all, that show
 /// an object with the slot of a style.
 fn changes(small: &mut Small, style: &ComicStyle) -> Vec<(f32, usize, usize)> {
-    small.style(style);
-    small.settle();
+    small.style(style).settle();
     let (input, output) = small.pass();
     let ids = small.prepass().expect("a prepass").ids;
     let pixel = |i: usize| {
@@ -73,8 +72,7 @@ fn an_object_keeps_its_colours() {
 fn the_rim_mixes_by_samples() {
     let mut small = Small::new(size(), Msaa::Sample4);
     let cube = orange_cube(&mut small);
-    small.style(&colors());
-    small.settle();
+    small.style(&colors()).settle();
     let (input, styled) = small.pass();
     small.world().entity_mut(cube).insert(NoStyle::default());
     let pixels = changes(&mut small, &colors());
@@ -142,8 +140,7 @@ fn descendants_inherit_it_where_asked() {
 fn it_costs_nothing_where_it_does_nothing() {
     let mut small = Small::new(size(), Msaa::Off);
     let cube = orange_cube(&mut small);
-    small.style(&colors());
-    small.settle();
+    small.style(&colors()).settle();
     assert!(!small.ran(ComicsStage::ObjectIds));
     small.world().entity_mut(cube).insert(NoStyle::default());
     small.settle();

@@ -84,8 +84,7 @@ fn new() -> Small {
 
 /// The ink of every pixel under a style.
 fn ink(small: &mut Small, style: &ComicStyle) -> Vec<f32> {
-    small.style(style);
-    small.settle();
+    small.style(style).settle();
     removed(small)
 }
 
@@ -479,11 +478,6 @@ fn assert_page(scales: &[f32]) {
     let size = UVec2::new(120, 90);
     let mut small = Small::new(size, Msaa::Off);
     small.clear();
-    let shot = |small: &mut Small, style: &ComicStyle| {
-        small.style(style);
-        small.settle();
-        small.picture()
-    };
     let dots = |shape| of(Halftone { shape, ..default() });
     let cells = of(Halftone {
         sampling: ScreenSampling::Cell,
@@ -505,15 +499,15 @@ fn assert_page(scales: &[f32]) {
         of(Paper::default()).with(lines),
     ]);
     override_main_pass(&mut small, None);
-    let plain = shot(&mut small, &ComicStyle::new());
+    let plain = small.shot(&ComicStyle::new());
     for style in styles {
         override_main_pass(&mut small, None);
-        let whole = shot(&mut small, &style);
+        let whole = small.shot(&style);
         assert_ne!(whole, plain, "{style:?}");
         for &scale in scales {
             let main_pass = (size.as_vec2() / scale).as_uvec2();
             override_main_pass(&mut small, Some(main_pass));
-            assert_eq!(shot(&mut small, &style), whole, "{scale}: {style:?}");
+            assert_eq!(small.shot(&style), whole, "{scale}: {style:?}");
         }
     }
     assert_eq!(small.errors(), 0);

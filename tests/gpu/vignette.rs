@@ -9,8 +9,7 @@ use crate::prelude::*;
 fn a_hard_vignette_is_an_ellipse_of_its_area() {
     let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
     small.clear();
-    small.settle();
-    let bare = small.picture();
+    let bare = small.settle().picture();
     for radius in [0.2f32, 0.45, 0.7] {
         small
             .insert(Vignette {

@@ -54,13 +54,6 @@ fn assert_pixels(msaa: Msaa, outlines: Outlines, widths: &[f32]) {
     }
 }
 
-/// The picture with outlines.
-fn drawn(small: &mut Small, outlines: Outlines) -> image::RgbaImage {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
-    small.picture()
-}
-
 /// The width of a line across a row: the sum of its ink.
 fn ink_across(picture: &image::RgbaImage, columns: Range<u32>, row: u32) -> f64 {
     black_ink(picture, columns.map(|x| (x, row)))
@@ -68,7 +61,7 @@ fn ink_across(picture: &image::RgbaImage, columns: Range<u32>, row: u32) -> f64 
 
 /// Fails unless the line across the middle row has this width.
 fn assert_width(small: &mut Small, outlines: Outlines, want: f64) {
-    let found = ink_across(&drawn(small, outlines), 30..66, 32);
+    let found = ink_across(&small.outlined(outlines), 30..66, 32);
     let weight = outlines.weight;
     assert!(
         (found - want).abs() < 0.02,
@@ -161,7 +154,7 @@ fn lines_follow_the_light() {
     for (shine, [left, right]) in [(Vec3::NEG_X, [6.0, 0.0]), (Vec3::X, [0.0, 6.0])] {
         let shine = Transform::default().looking_to(shine, Vec3::Y);
         small.world().entity_mut(light).insert(shine);
-        let picture = drawn(&mut small, outlines);
+        let picture = small.outlined(outlines);
         for (columns, want) in [(18..38, left), (58..78, right)] {
             let found = ink_across(&picture, columns, 32);
             assert!(
@@ -204,7 +197,7 @@ fn lines_follow_perspective() {
     wall(&mut small, [-100.0, -100.0], [0.0, 0.0], 24.0);
     wall(&mut small, [-100.0, -100.0], [100.0, 100.0], 30.0);
     let outlines = silhouettes(4.0, weight);
-    let picture = drawn(&mut small, outlines);
+    let picture = small.outlined(outlines);
     let [near, far] = [16, 48].map(|row| ink_across(&picture, 30..66, row));
     // The middle between 12 and 30 is 21.
     assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.02, "{near}");
@@ -251,7 +244,7 @@ fn lines_fade_as_black_surfaces_do() {
                 fog,
                 ..silhouettes(4.0, LineWeight::EVEN)
             };
-            let picture = drawn(&mut small, outlines);
+            let picture = small.outlined(outlines);
             for row in [32, 2] {
                 let found = ink_across(&picture, 40..56, row) / 4.0;
                 assert_eq!(picture.get_pixel(20, row).0[0], 255);
@@ -279,7 +272,7 @@ fn lines_fade_by_visibility() {
             fog: LineFog::Visibility { distance },
             ..silhouettes(4.0, LineWeight::EVEN)
         };
-        let picture = drawn(&mut small, outlines);
+        let picture = small.outlined(outlines);
         let found = ink_across(&picture, 40..56, 32) / 4.0;
         assert!((found - left).abs() < 0.012, "{distance}: {found}, {left}");
     }
@@ -296,15 +289,14 @@ fn fogged_black(small: &mut Small, wall: Entity) -> image::RgbaImage {
         materials.get_mut(&material).expect("loaded").base_color = color;
     };
     paint(small, Color::BLACK);
-    small.settle();
-    let black = small.picture();
+    let black = small.settle().picture();
     paint(small, Color::WHITE);
     black
 }
 
 /// Ink of every row of the picture between two columns.
 fn rows_of_ink(small: &mut Small, outlines: Outlines, columns: Range<u32>) -> Vec<f64> {
-    let picture = drawn(small, outlines);
+    let picture = small.outlined(outlines);
     let ink = |row: u32| black_ink(&picture, columns.clone().map(|x| (x, row)));
     (10..54).map(ink).collect()
 }

@@ -10,8 +10,7 @@ use bevy::{
         render_resource::{
             BindGroup, BindGroupLayoutDescriptor, CommandEncoder, FragmentState,
             RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
-            SpecializedRenderPipeline, TextureFormat, TextureSampleType, TextureUsages,
-            binding_types::{texture_2d_multisampled, uniform_buffer},
+            SpecializedRenderPipeline, TextureFormat, TextureUsages, binding_types::uniform_buffer,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
@@ -20,7 +19,7 @@ use bevy::{
 };
 
 use crate::{
-    gpu::definitions,
+    gpu::{UNFILTERABLE, definitions, sampled},
     lines::{
         key::LineKey,
         request::{LinePassUniform, LineRequest},
@@ -69,7 +68,7 @@ impl ResolveKey {
 
     pub fn layout(self) -> BindGroupLayoutDescriptor {
         let stages = ShaderStages::FRAGMENT;
-        let float = || texture_2d_multisampled(TextureSampleType::Float { filterable: false });
+        let float = || sampled(true, UNFILTERABLE);
         let mut entries = vec![
             uniform_buffer::<LinePassUniform>(false).build(1, stages),
             float().build(2, stages),

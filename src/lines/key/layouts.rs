@@ -6,14 +6,15 @@ use bevy::render::render_resource::{
     BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, StorageTextureAccess,
     TextureSampleType,
     binding_types::{
-        storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_2d_multisampled,
-        texture_storage_2d, uniform_buffer, uniform_buffer_sized,
+        storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d,
+        uniform_buffer, uniform_buffer_sized,
     },
 };
 
 use super::line_key::LineKey;
 use crate::{
     depth::view::RANGE_SIZE,
+    gpu::{UNFILTERABLE, sampled},
     lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
@@ -24,8 +25,9 @@ impl LineKey {
         if !self.contains(Self::DEPTH) {
             return vec![];
         }
-        let float = || texture_2d(TextureSampleType::Float { filterable: false });
-        let multisampled = self.contains(Self::MULTISAMPLED_PICTURE);
+        let float = || texture_2d(UNFILTERABLE);
+        // The depth that hides highlighted objects.
+        let picture = sampled(self.contains(Self::MULTISAMPLED_PICTURE), UNFILTERABLE);
         [
             (Self::DEPTH, float().build(2, stages)),
             (Self::RANGE, range_entry()),
@@ -33,7 +35,7 @@ impl LineKey {
             (Self::NORMALS, float().build(7, stages)),
             (Self::OBJECT_IDS, ids_entry(false)),
             (Self::OBJECT_DEPTHS, object_depths_entry()),
-            (Self::MARKS, picture_entry(multisampled, stages)),
+            (Self::MARKS, picture.build(27, stages)),
             (Self::WIDTH_MAP, widths_entry(false, stages)),
             (Self::MOTION, float().build(24, stages)),
         ]
@@ -182,17 +184,6 @@ fn in_cells<const READ: usize, const WRITTEN: usize>(
     layout(label, ShaderStages::COMPUTE, entries)
 }
 
-/// The layout entry of the depth that hides highlighted objects.
-fn picture_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEntry {
-    let unfilterable = TextureSampleType::Float { filterable: false };
-    let texture = if multisampled {
-        texture_2d_multisampled(unfilterable)
-    } else {
-        texture_2d(unfilterable)
-    };
-    texture.build(27, stages)
-}
-
 /// The layout entry of planes of bits.
 fn planes_entry(stages: ShaderStages) -> BindGroupLayoutEntry {
     storage_buffer_read_only_sized(false, None).build(20, stages)
@@ -222,5 +213,5 @@ pub(crate) fn owners_entry() -> BindGroupLayoutEntry {
 
 /// The layout entry of the ink in the fused pass.
 pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
-    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
+    texture_2d(UNFILTERABLE).build(4, ShaderStages::FRAGMENT)
 }

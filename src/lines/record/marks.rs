@@ -15,7 +15,7 @@ use bevy::{
             BindGroupEntry, BindGroupLayoutDescriptor, BlendState, CachedRenderPipelineId,
             ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp,
             RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
-            SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+            SpecializedRenderPipeline, TextureFormat,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
@@ -26,7 +26,7 @@ use bevy::{
 
 use crate::{
     bind_groups::Binder,
-    gpu::{attachment, entry},
+    gpu::{UNFILTERABLE, attachment, entry},
     lines::{
         passes::LinePasses,
         prepare::ViewLines,
@@ -59,7 +59,7 @@ pub(crate) struct MarkKey {
 impl MarkKey {
     fn layout() -> BindGroupLayoutDescriptor {
         let stages = ShaderStages::FRAGMENT;
-        let float = texture_2d(TextureSampleType::Float { filterable: false });
+        let float = texture_2d(UNFILTERABLE);
         let entries = [
             uniform_buffer::<LinePassUniform>(false).build(1, stages),
             float.build(4, stages),

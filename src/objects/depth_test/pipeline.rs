@@ -6,12 +6,12 @@ use bevy::{
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, ComputePipelineDescriptor, ShaderStages,
         SpecializedComputePipeline, TextureSampleType,
-        binding_types::{
-            storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer_sized,
-        },
+        binding_types::{storage_buffer_sized, uniform_buffer_sized},
     },
     shader::Shader,
 };
+
+use crate::gpu::{UNFILTERABLE, sampled};
 
 /// Counts missing ids. Its key: whether the view is multisampled.
 #[derive(Resource)]
@@ -28,20 +28,11 @@ impl CountPipeline {
 }
 
 pub(super) fn count_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
-    let types = [
-        TextureSampleType::Float { filterable: false },
-        TextureSampleType::Uint,
-    ];
-    let [depth, ids] = if multisampled {
-        types.map(texture_2d_multisampled)
-    } else {
-        types.map(texture_2d)
-    };
     let entries = BindGroupLayoutEntries::sequential(
         ShaderStages::COMPUTE,
         (
-            depth,
-            ids,
+            sampled(multisampled, UNFILTERABLE),
+            sampled(multisampled, TextureSampleType::Uint),
             uniform_buffer_sized(false, None),
             storage_buffer_sized(false, None),
         ),

@@ -2,7 +2,7 @@
 
 use bevy::{
     math::{IVec3, Vec3},
-    mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues},
     platform::collections::{HashMap, HashSet},
 };
 
@@ -71,23 +71,16 @@ impl Surface {
             _ => None,
         };
         let indices: Vec<u32> = match mesh.try_indices_option()? {
-            Some(Indices::U16(indices)) => indices.iter().map(|i| u32::from(*i)).collect(),
-            Some(Indices::U32(indices)) => indices.clone(),
+            Some(indices) => indices.iter().map(|i| i as u32).collect(),
             None => (0..positions.len() as u32).collect(),
         };
         let triangles = match mesh.primitive_topology() {
             PrimitiveTopology::TriangleList => indices.as_chunks::<3>().0.to_vec(),
             // Every second triangle of a strip has the other winding.
             PrimitiveTopology::TriangleStrip => indices
-                .windows(3)
+                .array_windows()
                 .enumerate()
-                .map(|(i, t)| {
-                    if i % 2 == 0 {
-                        [t[0], t[1], t[2]]
-                    } else {
-                        [t[0], t[2], t[1]]
-                    }
-                })
+                .map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [a, c, b] })
                 .collect(),
             _ => return Ok(None),
         };

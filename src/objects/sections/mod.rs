@@ -33,7 +33,7 @@ use self::divide::Surface;
 use super::{
     components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
-    inherit::{Inherit, Inherited, watch},
+    inherit::{Inherit, Inherited, register},
     table::ObjectStyles,
 };
 use crate::{
@@ -394,21 +394,20 @@ impl SectionTasks {
 }
 
 pub(super) fn build(app: &mut App) {
-    app.register_type::<MeshSections>()
-        .init_resource::<SectionTasks>()
+    register::<MeshSections>(app);
+    app.init_resource::<SectionTasks>()
         .init_resource::<SectionTables>()
         .init_resource::<MeshTasks>()
-        .init_resource::<AllMeshes>();
-    watch::<MeshSections>(app);
-    app.add_systems(
-        PostUpdate,
-        divide_meshes
-            .in_set(DivideMeshes)
-            .after(AssetEventSystems)
-            .after(assign_object_styles)
-            .after(update_object_groups)
-            .run_if(resource_exists::<Assets<Mesh>>),
-    );
+        .init_resource::<AllMeshes>()
+        .add_systems(
+            PostUpdate,
+            divide_meshes
+                .in_set(DivideMeshes)
+                .after(AssetEventSystems)
+                .after(assign_object_styles)
+                .after(update_object_groups)
+                .run_if(resource_exists::<Assets<Mesh>>),
+        );
 }
 
 /// Notes what the device supports.

@@ -24,11 +24,10 @@ use bevy::{
 };
 
 use crate::objects::{
-    ID_FORMAT, QueuedDepth,
+    DepthWrites, ID_FORMAT, QueuedDepth,
     items::{DrawnMeshes, Missing, warn_of_vertices},
     phase::{Bin, Layer},
     pipeline::{IdParts, ObjectIdPipeline, in_prepass, reads_material},
-    table::DepthWrites,
 };
 
 /// The shaders of this pass.
@@ -128,7 +127,7 @@ impl TransparentItems<'_> {
         view_key: MeshPipelineKey,
         targets: QueuedDepth,
     ) -> Result<(Bin, u32), Missing> {
-        if self.writes.cutoffs.get(entity.id()).is_none() {
+        if !self.writes.0.contains(entity.id()) {
             return Err(Missing::NotDrawn);
         }
         let drawn = self.drawn.get(entity)?;

@@ -19,7 +19,6 @@ use bevy::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
         render_resource::{SpecializedMeshPipelines, SpecializedRenderPipelines},
         renderer::RenderAdapterInfo,
-        sync_world::MainEntityHashSet,
     },
 };
 
@@ -28,11 +27,10 @@ use self::{
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
 use super::{
-    changes::{Follow, NoteChanges, follow},
+    changes::{NoteChanges, follow},
     depth_test::count_ids,
-    inherit::{Inherit, Inherited, watch},
+    inherit::{Inherited, Values, register},
     instances::expand_instances,
-    table::DepthWrites,
 };
 use crate::{
     depth::surfaces::prepass_is_empty,
@@ -98,34 +96,17 @@ impl DepthWrite {
     }
 }
 
-impl Inherit for DepthWrite {
-    fn is_inherited(&self) -> bool {
-        self.inherit
-    }
-}
+/// The least alpha that is drawn, of the transparent meshes that draw into the depth of effects.
+pub(crate) type DepthWrites = Values<DepthWrite, f32>;
 
-/// Notes the meshes with the component, and those that inherit it.
 fn assign_depth_writes(mut asking: Inherited<DepthWrite>, mut writes: ResMut<DepthWrites>) {
-    let changed = asking.update();
-    writes.cutoffs.begin();
-    for mesh in changed {
-        let cutoff = asking
-            .of(mesh)
-            .map(|(_, write)| write.sanitized().alpha_cutoff);
-        writes.cutoffs.set(mesh, cutoff);
-    }
-}
-
-impl Follow for DepthWrites {
-    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
-        self.cutoffs.follow(&main.cutoffs, changed);
-    }
+    writes.update(&mut asking, |write| write.sanitized().alpha_cutoff);
 }
 
 /// The part in the main world.
 pub(super) fn build(app: &mut App) {
-    watch::<DepthWrite>(app);
-    app.register_type::<DepthWrite>()
+    register::<DepthWrite>(app);
+    app.init_resource::<DepthWrites>()
         .add_systems(PostUpdate, assign_depth_writes);
 }
 

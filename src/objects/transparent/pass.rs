@@ -27,9 +27,7 @@ use bevy::{
             FragmentState, LoadOp, MultisampleState, Operations, PipelineCache,
             RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline,
             RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
-            SpecializedRenderPipelines, StoreOp, TextureFormat, TextureSampleType, TextureUsages,
-            TextureView,
-            binding_types::{texture_2d, texture_2d_multisampled},
+            SpecializedRenderPipelines, StoreOp, TextureFormat, TextureUsages, TextureView,
         },
         renderer::{RenderAdapter, RenderContext, RenderDevice, ViewQuery},
         texture::{CachedTexture, TextureCache},
@@ -42,7 +40,7 @@ use crate::{
     bind_groups::Binder,
     depth::surfaces::{OwnNormals, OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    gpu,
+    gpu::{self, UNFILTERABLE, sampled},
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdPhase, ObjectIdPhases},
@@ -72,12 +70,7 @@ pub(super) fn init_normal_copy(
 }
 
 fn copy_layout(samples: u32) -> BindGroupLayoutDescriptor {
-    let float = TextureSampleType::Float { filterable: false };
-    let texture = if samples > 1 {
-        texture_2d_multisampled(float)
-    } else {
-        texture_2d(float)
-    };
+    let texture = sampled(samples > 1, UNFILTERABLE);
     let entries = BindGroupLayoutEntries::single(ShaderStages::FRAGMENT, texture);
     BindGroupLayoutDescriptor::new("comics_copy_normals", &entries)
 }

@@ -3,10 +3,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::{DVec3, Vec3},
-    mesh::{
-        Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology,
-        VertexAttributeValues,
-    },
+    mesh::{Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
     platform::collections::HashMap,
     render::render_resource::VertexFormat,
 };
@@ -66,17 +63,12 @@ impl Faces {
             return Err(Unsmoothed::NoNormals);
         }
         let corners: Vec<u32> = match mesh.try_indices_option()? {
-            Some(Indices::U16(corners)) => corners.iter().map(|i| u32::from(*i)).collect(),
-            Some(Indices::U32(corners)) => corners.clone(),
+            Some(corners) => corners.iter().map(|i| i as u32).collect(),
             None => (0..positions.len() as u32).collect(),
         };
         let triangles: Vec<[u32; 3]> = match mesh.primitive_topology() {
-            PrimitiveTopology::TriangleList => {
-                (corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]])).collect()
-            }
-            PrimitiveTopology::TriangleStrip => {
-                (corners.windows(3).map(|t| [t[0], t[1], t[2]])).collect()
-            }
+            PrimitiveTopology::TriangleList => corners.as_chunks::<3>().0.to_vec(),
+            PrimitiveTopology::TriangleStrip => corners.array_windows().copied().collect(),
             _ => return Err(Unsmoothed::NoTriangles),
         };
         Ok(Self {

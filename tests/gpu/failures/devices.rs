@@ -166,8 +166,7 @@ fn occlusion_culling_changes_nothing() {
     small.camera_mut().despawn();
     let new = (camera(target, Msaa::Off), OcclusionCulling);
     small.camera = small.world().spawn(new).id();
-    small.style(&many_passes());
-    small.settle();
+    small.style(&many_passes()).settle();
     check(&mut small);
 }
 
@@ -224,8 +223,7 @@ fn the_largest_target_is_styled() {
         small.headless.resize(size, 1.0);
         small.restart(Msaa::Off);
         let plain = small.settle().picture();
-        small.style(&many_passes());
-        small.settle();
+        small.style(&many_passes()).settle();
         assert_eq!(small.errors(), 0, "{size}");
         assert!(
             changed(&plain, &small.picture()) > 0.1,
@@ -261,11 +259,12 @@ fn objects_with_lightmaps_have_lines() {
     let mut small = Small::new(size(), Msaa::Off);
     put_lightmapped(&mut small);
     let plain = small.settle().picture();
-    small.style(&ComicStyle::new().with(Outlines::default()));
-    let lines = changed(&plain, &small.settle().picture());
+    let lines = changed(
+        &plain,
+        &small.shot(&ComicStyle::new().with(Outlines::default())),
+    );
     assert!((0.005..0.2).contains(&lines), "{lines} of the picture");
-    small.style(&many_passes());
-    small.settle();
+    small.style(&many_passes()).settle();
     assert_eq!(small.errors(), 0);
 }
 
@@ -295,8 +294,7 @@ fn a_device_without_compute_shaders_draws_a_style() {
     let of_engine = small.errors();
     small.settle();
     let each = small.errors() - of_engine;
-    small.style(&many_passes());
-    small.settle();
+    small.style(&many_passes()).settle();
     assert_eq!(
         small.errors(),
         of_engine + 2 * each,

@@ -137,8 +137,7 @@ fn small_with_effects(msaa: Msaa) -> Small {
 /// effects are drawn once it is removed.
 fn passes_through<E: Effect>() {
     let mut small = small_with_effects(Msaa::Off);
-    small.settle();
-    let bare = small.picture();
+    let bare = small.settle().picture();
     small.insert((E::default(), Colorization::SEPIA)).settle();
     assert_eq!(small.picture(), bare, "{}", E::NAME);
     for (stage, reason) in [

@@ -19,8 +19,7 @@ fn is_finite(picture: &FloatImage) -> bool {
 #[test]
 fn without_a_prepass_effects_without_depth_still_run() {
     let mut small = Small::new(size(), Msaa::Off);
-    small.settle();
-    let original = small.picture();
+    let original = small.settle().picture();
     small
         .headless
         .app
@@ -126,14 +125,11 @@ fn absurd_settings_equal_their_sanitized_selves() {
             ..default()
         };
         let style = with_option(style, (other > 0.0).then_some(sketch));
-        small.style(&style);
-        small.settle();
+        small.style(&style).settle();
         let (_, output) = small.pass();
         assert!(is_finite(&output), "{value}, {other}");
         let picture = small.picture();
-        small.style(&style.sanitized());
-        small.settle();
-        assert_eq!(picture, small.picture(), "{value}, {other}");
+        assert_eq!(picture, small.shot(&style.sanitized()), "{value}, {other}");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -142,8 +138,7 @@ fn absurd_settings_equal_their_sanitized_selves() {
 fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(Hdr);
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     let calm = small.pass().1;
     for (name, emissive) in [
         ("NaN", LinearRgba::rgb(f32::NAN, 0.5, 0.5)),
@@ -174,13 +169,11 @@ fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
             ComicStyle::new().with(Outlines::default()),
             ComicStyle::new().with(Contours::default()),
         ] {
-            small.style(&lines);
-            small.settle();
+            small.style(&lines).settle();
             let (_, output) = small.pass();
             assert!(is_finite(&output), "{name}, under lines alone");
         }
-        small.style(&full_style());
-        small.settle();
+        small.style(&full_style()).settle();
     }
     assert_eq!(small.errors(), 0);
 }

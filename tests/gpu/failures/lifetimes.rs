@@ -91,16 +91,13 @@ fn is_listed(small: &Small) -> bool {
 fn a_removed_style_and_an_inactive_camera_run_nothing() {
     let mut small = Small::new(size(), Msaa::Off);
     let original = small.settle().picture();
-    small.style(&full_style());
-    assert_ne!(small.settle().picture(), original);
-    small.style(&ComicStyle::default());
-    let removed = small.settle().picture();
+    assert_ne!(small.shot(&full_style()), original);
+    let removed = small.shot(&ComicStyle::default());
     assert_eq!(removed, original, "a removed style leaves no trace");
     assert!(!small.camera_mut().contains::<DepthPrepass>());
     assert!(!is_listed(&small));
 
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     // Edits the component. In Bevy 0.19.1 a `Camera` that is replaced has no
     // target until its projection changes, with or without a style.
     for is_active in [false, true] {
@@ -121,8 +118,7 @@ fn a_removed_style_and_an_inactive_camera_run_nothing() {
 fn views_that_come_and_go_leave_no_buffers() {
     // No buffers of other tests end beside those of this one.
     let mut small = Small::alone(options(size()), Msaa::Off);
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     let buffers = |small: &Small| allocated(small)[0];
     small.headless.step(6);
     let before = buffers(&small);

@@ -29,8 +29,7 @@ fn tiny() -> UVec2 {
 
 fn styled(msaa: Msaa) -> Small {
     let mut small = Small::new(size(), msaa);
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     small
 }
 

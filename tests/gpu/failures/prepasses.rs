@@ -4,11 +4,6 @@ use bevy::{pbr::ScreenSpaceAmbientOcclusion, render::renderer::RenderInstance};
 
 use crate::prelude::*;
 
-fn has<C: Component>(small: &Small) -> bool {
-    let world = small.headless.app.world();
-    world.get::<C>(small.camera).is_some()
-}
-
 fn remove<B: Bundle>(small: &mut Small) {
     small.camera_mut().remove::<B>();
 }
@@ -80,7 +75,7 @@ fn a_style_keeps_its_prepass_until_the_next_one_is_compiled() {
     assert!(waited > 0, "there was nothing to wait for");
     let sepia = still(&mut small);
     assert_ne!(sepia, grey);
-    assert!(!has::<DepthPrepass>(&small), "nothing reads depth any more");
+    assert!(!small.has::<DepthPrepass>(), "nothing reads depth any more");
     assert_eq!(small.errors(), 0);
 }
 
@@ -105,7 +100,7 @@ fn creases_keep_their_normals_until_the_next_style_is_compiled() {
     let mut frames = vec![];
     for _ in 0..4000 {
         step(&mut small);
-        if !has::<NormalPrepass>(&small) {
+        if !small.has::<NormalPrepass>() {
             break;
         }
         frames.push(small.picture());
@@ -119,7 +114,7 @@ fn creases_keep_their_normals_until_the_next_style_is_compiled() {
             "frame {i} shows neither look"
         );
     }
-    assert!(!has::<NormalPrepass>(&small) && has::<DepthPrepass>(&small));
+    assert!(!small.has::<NormalPrepass>() && small.has::<DepthPrepass>());
 }
 
 /// A prepass that a component of the game requires stays when the style is
@@ -128,19 +123,19 @@ fn creases_keep_their_normals_until_the_next_style_is_compiled() {
 fn a_prepass_that_ambient_occlusion_requires_stays() {
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(Outlines::default()).settle();
-    assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
+    assert!(small.has::<DepthPrepass>() && small.has::<NormalPrepass>());
     small
         .insert(ScreenSpaceAmbientOcclusion::default())
         .settle();
     remove::<Outlines>(&mut small);
     small.settle();
     small.settle();
-    assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
+    assert!(small.has::<DepthPrepass>() && small.has::<NormalPrepass>());
     assert_eq!(small.errors(), 0);
     // Without that component nothing needs the prepass that this crate inserted.
     remove::<ScreenSpaceAmbientOcclusion>(&mut small);
     small.settle();
-    assert!(!has::<DepthPrepass>(&small) && !has::<NormalPrepass>(&small));
+    assert!(!small.has::<DepthPrepass>() && !small.has::<NormalPrepass>());
     assert_eq!(small.errors(), 0);
 }
 
@@ -157,7 +152,7 @@ fn a_prepass_of_the_game_stays() {
         small.insert(DepthPrepass).settle();
         remove::<Contours>(&mut small);
         small.settle().settle();
-        assert!(has::<DepthPrepass>(&small), "first: {is_first}");
+        assert!(small.has::<DepthPrepass>(), "first: {is_first}");
     }
 }
 
@@ -270,12 +265,12 @@ fn a_prepass_that_is_taken_away_comes_back() {
     let inked = small.picture();
     remove::<DepthPrepass>(&mut small);
     small.settle();
-    assert!(has::<DepthPrepass>(&small));
+    assert!(small.has::<DepthPrepass>());
     assert_eq!(small.picture(), inked);
     // This crate still removes it when no style reads it.
     remove::<Contours>(&mut small);
     small.settle();
-    assert!(!has::<DepthPrepass>(&small));
+    assert!(!small.has::<DepthPrepass>());
 }
 
 /// Ids are drawn in the first frame that reads them: once pipelines are compiled,

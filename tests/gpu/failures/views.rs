@@ -14,9 +14,7 @@ fn a_multisampled_camera_is_styled() {
     let mut small = styled(Msaa::Sample4);
     assert!(small.ran(ComicsStage::Stylize) && small.ran(ComicsStage::DepthRange));
     let with = small.picture();
-    small.style(&ComicStyle::default());
-    small.settle();
-    assert!(changed(&with, &small.picture()) > 0.3);
+    assert!(changed(&with, &small.shot(&ComicStyle::default())) > 0.3);
     assert_eq!(small.errors(), 0);
 }
 
@@ -29,8 +27,7 @@ fn hdr_can_be_toggled_and_a_target_may_store_linear_colour() {
     assert!(changed(&ldr, &small.picture()) < 0.01);
     let camera = small.camera;
     small.world().entity_mut(camera).remove::<Hdr>();
-    small.settle();
-    assert_eq!(ldr, small.picture());
+    assert_eq!(ldr, small.settle().picture());
     assert_eq!(small.errors(), 0);
 
     let linear_target = HeadlessOptions {
@@ -38,8 +35,7 @@ fn hdr_can_be_toggled_and_a_target_may_store_linear_colour() {
         ..options(size())
     };
     let mut small = Small::with(linear_target, Msaa::Off);
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     assert!(small.ran(ComicsStage::Stylize));
     assert_eq!(small.errors(), 0);
 }
@@ -153,8 +149,7 @@ fn a_deferred_camera_looks_like_a_forward_one() {
         .world()
         .insert_resource(DefaultOpaqueRendererMethod::deferred());
     small.insert((DeferredPrepass, DepthPrepass));
-    small.style(&full_style());
-    small.settle();
+    small.style(&full_style()).settle();
     assert!(small.ran(ComicsStage::Stylize));
     assert!(
         changed(&forward, &small.picture()) < 0.05,
@@ -173,8 +168,7 @@ fn check_post_processes(cases: &[(Msaa, bool)]) {
             small.insert((Hdr, Bloom::NATURAL));
         }
         small.insert(Tonemapping::TonyMcMapface);
-        small.settle();
-        let plain = small.picture();
+        let plain = small.settle().picture();
         small.insert(Fxaa::default()).settle();
         let fxaa = small.picture();
         assert!(changed(&plain, &fxaa) < 0.5, "FXAA lost the picture");

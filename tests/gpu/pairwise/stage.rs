@@ -253,10 +253,8 @@ pub fn shoot(small: &mut Small, row: &Row, size: UVec2, style: Option<&ComicStyl
     override_main_pass(small, half);
     match style {
         Some(style) => small.style(style),
-        None => {
-            small.insert(DepthPrepass);
-        }
-    }
+        None => small.insert(DepthPrepass),
+    };
     let frames = if row.is_temporal() {
         SETTLE_HISTORY
     } else {

@@ -2,7 +2,7 @@
 
 use bevy::{
     mesh::{
-        Indices, MeshVertexAttribute, VertexAttributeValues,
+        MeshVertexAttribute, VertexAttributeValues,
         skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
     },
     prelude::*,
@@ -53,8 +53,11 @@ fn add(points: &mut Vec<Vec3>, mesh: &Mesh, world_from_local: &Mat4, pose: Optio
     };
     let mut used = vec![false; positions.len()];
     match mesh.try_indices_option().ok().flatten() {
-        Some(Indices::U16(indices)) => mark(&mut used, indices.iter().map(|i| usize::from(*i))),
-        Some(Indices::U32(indices)) => mark(&mut used, indices.iter().map(|i| *i as usize)),
+        Some(indices) => {
+            for index in indices.iter().filter(|index| *index < positions.len()) {
+                used[index] = true;
+            }
+        }
         None => used.fill(true),
     }
     for (vertex, _) in used.iter().enumerate().filter(|(_, used)| **used) {
@@ -70,13 +73,5 @@ fn add(points: &mut Vec<Vec3>, mesh: &Mesh, world_from_local: &Mat4, pose: Optio
                 .sum::<Option<Vec3>>()
         });
         points.push(posed.unwrap_or_else(|| world_from_local.transform_point3(position)));
-    }
-}
-
-fn mark(used: &mut [bool], indices: impl Iterator<Item = usize>) {
-    for index in indices {
-        if let Some(used) = used.get_mut(index) {
-            *used = true;
-        }
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy::{
     math::{Mat4, Vec3},
-    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Mesh, PrimitiveTopology, VertexAttributeValues},
 };
 
 use super::ray::{Ray, Sides};
@@ -36,17 +36,13 @@ impl Known {
         };
         let positions: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
         let indices: Vec<u32> = match mesh.try_indices_option() {
-            Ok(Some(Indices::U16(indices))) => indices.iter().map(|i| u32::from(*i)).collect(),
-            Ok(Some(Indices::U32(indices))) => indices.clone(),
+            Ok(Some(indices)) => indices.iter().map(|i| i as u32).collect(),
             Ok(None) => (0..positions.len() as u32).collect(),
             Err(_) => return Self::Bounds,
         };
         let (triangles, has_sides) = match mesh.primitive_topology() {
             PrimitiveTopology::TriangleList => (indices.as_chunks::<3>().0.to_vec(), true),
-            PrimitiveTopology::TriangleStrip => {
-                let triangle = |t: &[u32]| [t[0], t[1], t[2]];
-                (indices.windows(3).map(triangle).collect(), false)
-            }
+            PrimitiveTopology::TriangleStrip => (indices.array_windows().copied().collect(), false),
             _ => return Self::Nothing,
         };
         let positions = match joints {

@@ -1,7 +1,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::primitives::{Cuboid, Cylinder, Sphere, Torus},
-    mesh::{Mesh, MeshBuilder, Meshable},
+    mesh::{Indices, Mesh, MeshBuilder, Meshable},
     prelude::Vec3,
 };
 

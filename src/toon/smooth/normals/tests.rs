@@ -1,7 +1,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::primitives::{Cuboid, Sphere},
-    mesh::{MeshBuilder, Meshable, PlaneMeshBuilder},
+    mesh::{Indices, MeshBuilder, Meshable, PlaneMeshBuilder},
 };
 
 use super::*;
