@@ -30,7 +30,7 @@ use bevy::{
 use crate::{
     clock,
     origin::WorldOrigin,
-    settings::{FieldRange, clamp_or_default},
+    settings::{FieldRange, impl_sanitized},
 };
 
 /// Holds the poses of an object and of the meshes below it for several frames, like those of a
@@ -59,15 +59,7 @@ impl Default for SteppedAnimation {
     }
 }
 
-impl SteppedAnimation {
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            rate: clamp_or_default(self.rate, 12.0, 1.0, 60.0),
-        }
-    }
-}
+impl_sanitized!(SteppedAnimation);
 
 /// Exchanges the poses around the extraction of the render world.
 pub(super) fn hold_while_extracting(render_app: &mut SubApp) {

@@ -32,7 +32,7 @@ pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};
 pub use smoothing::{CameraCut, RangeSmoothing};
 
-use crate::settings::{FieldRange, clamp_fields, ordered_planes};
+use crate::settings::{BlendField, FieldRange, NotFinite, clamp_fields};
 
 /// Whether some material reads the smoothed range of each view that has a plan.
 #[derive(Resource, Default)]
@@ -50,6 +50,7 @@ pub(crate) struct MaterialsReadRange(pub bool);
 pub struct DepthMap {
     /// Distances that map to 0 and 1, and the scale between them.
     /// Default: [`DepthMapping::MinMax`].
+    #[reflect(@BlendField::Fields)]
     pub mapping: DepthMapping,
     /// Exchanges near and far for the effects that read `D` as a gradient, such as desaturation and
     /// colorization, so that the atmosphere is in the foreground. Contours and outlines do not
@@ -121,11 +122,8 @@ impl DepthMap {
     pub fn sanitized(self) -> Self {
         let map = clamp_fields(self);
         Self {
-            mapping: map.mapping.sanitized(),
-            sky_beyond: (map.sky_beyond).filter(|distance| distance.is_finite()),
-            smoothing: (map.smoothing)
-                .map(RangeSmoothing::sanitized)
-                .filter(|smoothing| !smoothing.is_negligible()),
+            mapping: map.mapping.ordered(),
+            smoothing: (map.smoothing).filter(|smoothing| !smoothing.is_negligible()),
             ..map
         }
     }
@@ -160,21 +158,21 @@ pub enum DepthMapping {
     Fixed {
         /// Distance that maps to 0, in world units. Range 1e-6 to 1e30; 0.1 if it
         /// is not finite.
-        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"), @NotFinite(0.1))]
         from: f32,
         /// Distance that maps to 1, in world units. Range 1e-6 to 1e36, at least
         /// 1.001 times `from`; 1000 if it is not finite. If it is below `from`, the
         /// two are exchanged.
-        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"), @NotFinite(1000.0))]
         to: f32,
     },
     /// Logarithmic between two given distances; no reduction runs.
     FixedLogarithmic {
         /// Distance that maps to 0, as in [`DepthMapping::Fixed`].
-        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"), @NotFinite(0.1))]
         from: f32,
         /// Distance that maps to 1, as in [`DepthMapping::Fixed`].
-        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"), @NotFinite(1000.0))]
         to: f32,
     },
 }
@@ -194,18 +192,13 @@ impl DepthMapping {
         )
     }
 
-    fn sanitized(self) -> Self {
-        match self {
-            Self::Fixed { from, to } => {
-                let (from, to) = ordered_planes(from, to);
-                Self::Fixed { from, to }
-            }
-            Self::FixedLogarithmic { from, to } => {
-                let (from, to) = ordered_planes(from, to);
-                Self::FixedLogarithmic { from, to }
-            }
-            other => other,
+    /// With near and far in order, and apart.
+    fn ordered(mut self) -> Self {
+        if let Self::Fixed { from, to } | Self::FixedLogarithmic { from, to } = &mut self {
+            let (near, far) = (f32::min(*from, *to), f32::max(*from, *to));
+            (*from, *to) = (near, far.max(near * (1.0 + 1e-3)));
         }
+        self
     }
 }
 

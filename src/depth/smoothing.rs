@@ -15,7 +15,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, clamp_fields};
+use crate::settings::{FieldRange, impl_sanitized};
 
 /// Smooths the visible range of a [`DepthMap`](crate::DepthMap) over time, so that it
 /// does not flicker when something small or short-lived enters or leaves the view.
@@ -100,18 +100,13 @@ impl RangeSmoothing {
         shrink: 0.0,
     };
 
-    /// The settings that are used: every number in its documented range, what
-    /// is not finite replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
-
     /// Whether it changes nothing.
     pub fn is_negligible(&self) -> bool {
         *self == Self::OFF
     }
 }
+
+impl_sanitized!(RangeSmoothing);
 
 /// Tells a camera that its next frame does not continue the last one, after a cut or
 /// a teleport. Its smoothed range starts anew.

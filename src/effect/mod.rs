@@ -30,7 +30,6 @@ pub use crate::settings::{
 };
 pub(crate) use any::encode;
 pub use any::{AnyEffect, EffectType};
-pub(crate) use blend::mixed as mix_fields;
 pub use context::EffectContext;
 pub use needs::Needs;
 pub use registry::{EffectPlugin, EffectRegistry};
@@ -44,7 +43,7 @@ pub(crate) use variants::definition;
 use crate::{
     diagnostics::ComicsStage,
     lines::{LineModifiers, MapJumps, Outlines},
-    settings::clamp_fields,
+    settings::{clamp_fields, mix_fields, same_modes},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -108,9 +107,10 @@ pub trait Effect:
     type Uniform: ShaderType + WriteInto;
 
     /// The settings that are used. Values in range must be returned unchanged. Default: every
-    /// `f32`, `u32`, `Vec2`, `Vec3` and `Option<f32>` with a [`FieldRange`] is clamped to it (if it
-    /// is not finite, it becomes its default), and every `Color` to what a display shows. Other
-    /// types, fields without a range, fields of enums and structs in options are not changed.
+    /// `f32`, `u32`, `Vec2` and `Vec3` with a [`FieldRange`] is clamped to it, and every `Color` to
+    /// what a display shows, also in structs, options and variants of enums. What is not finite
+    /// becomes that of [`Default`]; if this has another variant there, the least number of the
+    /// range, or black. Lists and fields without a range are not changed.
     #[must_use]
     fn sanitized(self) -> Self {
         clamp_fields(self)
@@ -197,19 +197,19 @@ pub trait Effect:
     /// Interpolates between this effect (`t` = 0) and `other` (`t` = 1). Default:
     /// numbers (`f32`, `Vec2`, `Vec3`) are interpolated linearly, or by ratio if their
     /// [`FieldRange`] is logarithmic; colours are interpolated in
-    /// `OKLab`; all other fields keep this effect's values.
+    /// `OKLab`; fields marked by [`BlendField::Fields`] are interpolated field by field; all others
+    /// keep this effect's values.
     #[must_use]
     fn mixed(&self, other: &Self, t: f32) -> Self {
-        blend::mixed(self, other, t)
+        mix_fields(self, other, t)
     }
 
     /// Whether [`Effect::mixed`] leads from this effect to the other without a
     /// jump. If not, a transition fades the effect out, exchanges the settings at
     /// half time, and fades the effect in. Default: true if all fields are equal
-    /// that are neither `f32`, `Vec2`, `Vec3` nor `Color` nor marked by
-    /// [`BlendField`].
+    /// that are neither interpolated nor marked by [`BlendField::Switch`].
     fn same_modes(&self, other: &Self) -> bool {
-        blend::same_modes(self, other)
+        same_modes(self, other)
     }
 
     /// The same effect with only a fraction (0 to 1) of its dependence on the depth

@@ -69,9 +69,8 @@ pub(super) fn prepare_pass_textures(
         let passes = || request.earlier.iter();
         // In turns by the number of the pass: two, even if only one of the passes draws to them.
         let both = |draws: bool| if draws { passes().len().min(2) } else { 0 };
-        let has_scalar = |pass: &EarlierPassRequest| {
-            matches!(pass.picture.key.draws, Drawn::WithScalar(_))
-        };
+        let has_scalar =
+            |pass: &EarlierPassRequest| matches!(pass.picture.key.draws, Drawn::WithScalar(_));
         let pictures = get(PASS_FORMAT, both(!passes().all(has_scalar)));
         let with_scalar = get(PACKED_FORMAT, both(passes().any(has_scalar)));
         let has_means = passes().any(|pass| pass.means.is_some());
@@ -97,12 +96,7 @@ pub(super) fn prepare_pass_textures(
 fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
     let [_, _, width, height] = request.context.viewport.to_array();
     let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-    texture(
-        "comics_pass",
-        (UVec2::new(width, height), 1),
-        format,
-        usage,
-    )
+    texture("comics_pass", (UVec2::new(width, height), 1), format, usage)
 }
 
 pub(super) fn described<'a>(

@@ -369,8 +369,14 @@ impl StylizeKey {
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.reads_owners(), "LINE_OWNERS"),
-            (self.surface && self.area != DrawnArea::Base, "SURFACE_LINES"),
-            (self.edge_styles && self.area != DrawnArea::Base, "EDGE_STYLES"),
+            (
+                self.surface && self.area != DrawnArea::Base,
+                "SURFACE_LINES",
+            ),
+            (
+                self.edge_styles && self.area != DrawnArea::Base,
+                "EDGE_STYLES",
+            ),
             (self.layer_ink, "IN_LAYERS"),
             (self.layer_ink && self.area != DrawnArea::Base, "LAYER_INK"),
             (self.object_styles, "OBJECT_STYLES"),

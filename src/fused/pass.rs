@@ -89,7 +89,12 @@ impl SpecializedRenderPipeline for StylizePipeline {
 /// `PRINTS`: draws the views whose colours are printed, the others otherwise.
 pub(super) fn stylize<const PRINTS: bool>(
     view: ViewQuery<(
-        (&ViewTarget, &FusedRequest, &ViewFused, Option<&PassTextures>),
+        (
+            &ViewTarget,
+            &FusedRequest,
+            &ViewFused,
+            Option<&PassTextures>,
+        ),
         (
             (
                 (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),

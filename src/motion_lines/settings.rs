@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::trail::Trail;
-use crate::settings::{FieldRange, clamp_fields};
+use crate::settings::{FieldRange, impl_sanitized};
 
 /// Draws lines behind a mesh while it moves fast. Each line is the path of a point on its surface,
 /// so lines of a turning mesh are curved (Lake et al. 2000).
@@ -93,11 +93,6 @@ impl Default for MotionLines {
 impl MotionLines {
     /// The largest number of points.
     pub const MOST_POINTS: u32 = 128;
-
-    /// The settings that are used: every number is clamped to its documented range, and a number
-    /// that is not finite is replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
 }
+
+impl_sanitized!(MotionLines);

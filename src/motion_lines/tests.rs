@@ -10,7 +10,6 @@ use bevy::{
 };
 
 use super::{
-    MotionLines,
     ribbon::{strength, taper},
     seeds::{Seed, seeds_of},
     trail::{Pose, Trail},
@@ -225,28 +224,4 @@ fn widths_grow_with_the_speed_and_taper_to_both_ends() {
     assert!(widths.iter().all(|w| (0.0..=1.0).contains(w)));
     assert!(widths[..85].is_sorted(), "thinner to the tail");
     assert!(widths[100] < 0.2);
-}
-
-#[test]
-fn numbers_of_motion_lines_are_brought_into_their_ranges() {
-    for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30] {
-        let odd = MotionLines {
-            points: u32::MAX,
-            duration: x,
-            gap: x,
-            variation: x,
-            min_speed: x,
-            width: x,
-            rate: x,
-            seed: u32::MAX,
-            ..MotionLines::default()
-        };
-        let lines = odd.sanitized();
-        assert_eq!(lines, lines.sanitized());
-        assert_eq!(lines.points, MotionLines::MOST_POINTS);
-        assert!((0.02..=2.0).contains(&lines.duration));
-        assert!((0.0..=0.9).contains(&lines.gap) && (0.0..=0.9).contains(&lines.variation));
-        assert!((1e-4..=1e6).contains(&lines.min_speed));
-        assert!((0.5..=16.0).contains(&lines.width) && (0.0..=60.0).contains(&lines.rate));
-    }
 }

@@ -18,7 +18,7 @@ use super::{
     levels::Levels,
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
-use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
+use crate::settings::{FieldRange, NotFinite, impl_sanitized, linear_rgb};
 
 /// Removes the [`Outlines`](crate::Outlines) of this object.
 ///
@@ -83,11 +83,11 @@ pub struct OutlineStyle {
     pub color: Option<Color>,
     /// Width of all lines in logical pixels; `None` keeps the camera's.
     /// Range 0.5 to 16, default `None`.
-    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"), @NotFinite(2.0))]
     pub width: Option<f32>,
     /// Factor of the opacity of all lines. Faithful lines lie on both sides of an edge; only the
     /// side on the object changes. Range 0 to 1; `None` is 1. Default: `None`.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub opacity: Option<f32>,
     /// Kinds of line that are drawn, if the camera draws them too. Default: all.
     pub kinds: OutlineKinds,
@@ -130,18 +130,9 @@ impl Default for OutlineKinds {
     }
 }
 
-impl OutlineStyle {
-    /// The settings that are used: width, colour and opacity in their documented ranges.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            color: self.color.map(|c| clamp_color(c, Color::BLACK)),
-            width: clamp_option_or_default(self.width, 2.0, 0.5, 16.0),
-            opacity: clamp_option_or_default(self.opacity, 1.0, 0.0, 1.0),
-            ..self
-        }
-    }
+impl_sanitized!(OutlineStyle);
 
+impl OutlineStyle {
     fn uniform(self) -> ObjectStyleUniform {
         let style = self.sanitized();
         let OutlineKinds {

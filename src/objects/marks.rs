@@ -23,7 +23,7 @@ use super::{
     shared::Shared,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles, VISIBLE_ONLY},
 };
-use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
+use crate::settings::{FieldRange, impl_sanitized, linear_rgb};
 
 /// Bits of `ObjectStyleUniform::kinds`.
 const SILHOUETTES: u32 = 1;
@@ -102,18 +102,6 @@ impl Default for XRayOutline {
     }
 }
 
-/// Colour, width and opacity of a line in their documented ranges.
-fn bounded_line(
-    (color, width, opacity): (Color, f32, f32),
-    (default_color, default_width, default_opacity): (Color, f32, f32),
-) -> (Color, f32, f32) {
-    (
-        clamp_color(color, default_color),
-        clamp_or_default(width, default_width, 0.5, 16.0),
-        clamp_or_default(opacity, default_opacity, 0.0, 1.0),
-    )
-}
-
 /// A line with this colour, width and opacity. `kinds`: those that are drawn.
 fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectStyleUniform {
     ObjectStyleUniform {
@@ -126,21 +114,11 @@ fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectS
     }
 }
 
+impl_sanitized!(SelectionOutline, XRayOutline);
+
 impl SelectionOutline {
     fn line(self) -> (Color, f32, f32) {
         (self.color, self.width, self.opacity)
-    }
-
-    /// The settings that are used: numbers and colour in their documented ranges.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        let (color, width, opacity) = bounded_line(self.line(), Self::default().line());
-        Self {
-            color,
-            width,
-            opacity,
-            ..self
-        }
     }
 
     /// Only the border against other objects.
@@ -153,18 +131,6 @@ impl SelectionOutline {
 impl XRayOutline {
     fn line(self) -> (Color, f32, f32) {
         (self.color, self.width, self.opacity)
-    }
-
-    /// The settings that are used: numbers and colour in their documented ranges.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        let (color, width, opacity) = bounded_line(self.line(), Self::default().line());
-        Self {
-            color,
-            width,
-            opacity,
-            ..self
-        }
     }
 
     /// Silhouettes and the border against other objects.

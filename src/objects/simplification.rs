@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::inherit::{Inherited, Values};
-use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
+use crate::settings::{FieldRange, impl_sanitized};
 
 /// Changes how much effects simplify this object with distance: a hero keeps all details, or a
 /// crowd is simple even near the camera.
@@ -52,16 +52,6 @@ impl ObjectSimplification {
         }
     }
 
-    /// The settings that are used, in their documented ranges.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            level: clamp_option_or_default(self.level, 0.0, 0.0, 1.0),
-            offset: clamp_or_default(self.offset, 0.0, -1.0, 1.0),
-            ..self
-        }
-    }
-
     /// The factor of the simplification by distance, and what is added to it.
     fn dial(self) -> Vec2 {
         let s = self.sanitized();
@@ -71,6 +61,8 @@ impl ObjectSimplification {
         }
     }
 }
+
+impl_sanitized!(ObjectSimplification);
 
 /// The dial of an object without an [`ObjectSimplification`].
 pub(super) const BY_DISTANCE: Vec2 = Vec2::X;

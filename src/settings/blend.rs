@@ -2,7 +2,13 @@
 
 use bevy::{
     color::{Color, LinearRgba, Mix, Oklaba},
-    math::FloatExt,
+    math::{FloatExt, Vec2, Vec3},
+    reflect::{PartialReflect, attributes::CustomAttributes},
+};
+
+use super::{
+    BlendField, FieldRange,
+    parts::{attributes, is_same_variant, part, part_mut},
 };
 
 /// The colour at fraction `t` (0 to 1) between two colours, mixed in `OKLab`.
@@ -42,39 +48,156 @@ pub(crate) fn crossfade_weight(t: f32) -> f32 {
     (1.0 - 2.0 * t).abs()
 }
 
+/// The settings at fraction `t` between two. If one is missing, the other fades. If a mode differs,
+/// the settings fade out until `t = 0.5`, change the mode there, and fade in again.
+pub(crate) fn crossfade<T>(
+    a: Option<T>,
+    b: Option<T>,
+    t: f32,
+    faded: fn(T, f32) -> T,
+    mixed: fn(&T, &T, f32) -> T,
+    same_modes: fn(&T, &T) -> bool,
+) -> Option<T> {
+    Some(match (a, b) {
+        (None, None) => return None,
+        (Some(a), None) => faded(a, 1.0 - t),
+        (None, Some(b)) => faded(b, t),
+        (Some(a), Some(b)) => {
+            let between = if t < 0.5 {
+                mixed(&a, &b, t)
+            } else {
+                mixed(&b, &a, 1.0 - t)
+            };
+            if same_modes(&a, &b) {
+                between
+            } else {
+                faded(between, crossfade_weight(t))
+            }
+        }
+    })
+}
+
 /// A group of settings that can be faded out and mixed with another of its type.
-pub(crate) trait Blend: Copy {
+pub(crate) trait Blend: PartialReflect + Clone {
     /// The settings with `fraction` of their strength; at 0 they change nothing.
     fn faded(self, fraction: f32) -> Self;
 
     /// Whether the two differ in numbers and colours only, not in a mode.
-    fn same_modes(&self, other: &Self) -> bool;
+    fn same_modes(&self, other: &Self) -> bool {
+        same_modes(self, other)
+    }
 
     /// Numbers and colours at fraction `t` between the two; modes of `self`.
-    fn mixed(self, other: Self, t: f32) -> Self;
-
-    /// The settings at fraction `t` between the two. If one is missing, the other
-    /// fades. If a mode differs, the settings fade out until `t = 0.5`, change the
-    /// mode there, and fade in again.
-    fn blend(a: Option<Self>, b: Option<Self>, t: f32) -> Option<Self> {
-        Some(match (a, b) {
-            (None, None) => return None,
-            (Some(a), None) => a.faded(1.0 - t),
-            (None, Some(b)) => b.faded(t),
-            (Some(a), Some(b)) => {
-                let mixed = if t < 0.5 {
-                    a.mixed(b, t)
-                } else {
-                    b.mixed(a, 1.0 - t)
-                };
-                if a.same_modes(&b) {
-                    mixed
-                } else {
-                    mixed.faded(crossfade_weight(t))
-                }
-            }
-        })
+    fn mixed(&self, other: &Self, t: f32) -> Self {
+        mix_fields(self, other, t)
     }
+
+    /// The settings at fraction `t` between the two: see [`crossfade`].
+    fn blend(a: Option<Self>, b: Option<Self>, t: f32) -> Option<Self> {
+        crossfade(a, b, t, Self::faded, Self::mixed, Self::same_modes)
+    }
+}
+
+/// The fields at fraction `t` between the two values, as [`BlendField`] says: `f32`, `Vec2`, `Vec3`
+/// and colours are interpolated, all others are those of `a`.
+pub(crate) fn mix_fields<T: PartialReflect + Clone>(a: &T, b: &T, t: f32) -> T {
+    let mut mixed = a.clone();
+    mix_parts(&mut mixed, [a, b], t, None);
+    mixed
+}
+
+/// As [`mix_fields`], but from `t = 0.5` on, the fields that are not interpolated are those of `b`.
+pub(crate) fn blend_fields<T: PartialReflect + Clone>(a: &T, b: &T, t: f32) -> T {
+    let mut mixed = if t < 0.5 { a.clone() } else { b.clone() };
+    mix_parts(&mut mixed, [a, b], t, None);
+    mixed
+}
+
+/// Whether all fields are equal that are not interpolated, and not [`BlendField::Switch`].
+pub(crate) fn same_modes<T: PartialReflect>(a: &T, b: &T) -> bool {
+    have_same_modes(a, b, None)
+}
+
+fn mix_parts(
+    slot: &mut dyn PartialReflect,
+    [a, b]: [&dyn PartialReflect; 2],
+    t: f32,
+    outer: Option<&CustomAttributes>,
+) {
+    if !is_same_variant(a, b) {
+        return;
+    }
+    for i in 0.. {
+        let attributes = attributes(a, i, outer);
+        let (Some(slot), Some(a), Some(b)) = (part_mut(slot, i), part(a, i), part(b, i)) else {
+            return;
+        };
+        mix_part(slot, [a, b], t, attributes);
+    }
+}
+
+fn mix_part(
+    slot: &mut dyn PartialReflect,
+    ends: [&dyn PartialReflect; 2],
+    t: f32,
+    attributes: Option<&CustomAttributes>,
+) {
+    let rule = attributes.and_then(|attributes| attributes.get::<BlendField>());
+    if rule == Some(&BlendField::Switch) {
+        return;
+    }
+    if let (Some(slot), Some([a, b])) = (slot.try_downcast_mut::<f32>(), typed::<f32>(ends)) {
+        let range = attributes.and_then(|attributes| attributes.get::<FieldRange>());
+        *slot = if range.is_some_and(|range| range.logarithmic) {
+            blend_ratio(a, b, t)
+        } else {
+            a.lerp(b, t)
+        };
+    } else if let (Some(slot), Some([a, b])) =
+        (slot.try_downcast_mut::<Color>(), typed::<Color>(ends))
+    {
+        *slot = blend_color(a, b, t);
+    } else if let (Some(slot), Some([a, b])) =
+        (slot.try_downcast_mut::<Vec2>(), typed::<Vec2>(ends))
+    {
+        *slot = a.lerp(b, t);
+    } else if let (Some(slot), Some([a, b])) =
+        (slot.try_downcast_mut::<Vec3>(), typed::<Vec3>(ends))
+    {
+        *slot = a.lerp(b, t);
+    } else if rule == Some(&BlendField::Fields) {
+        mix_parts(slot, ends, t, attributes);
+    }
+}
+
+fn typed<T: Copy + 'static>([a, b]: [&dyn PartialReflect; 2]) -> Option<[T; 2]> {
+    Some([*a.try_downcast_ref()?, *b.try_downcast_ref()?])
+}
+
+fn have_same_modes(
+    a: &dyn PartialReflect,
+    b: &dyn PartialReflect,
+    outer: Option<&CustomAttributes>,
+) -> bool {
+    let is_same = |i: usize| {
+        let (a_part, b_part) = (part(a, i)?, part(b, i)?);
+        let attributes = attributes(a, i, outer);
+        let rule = attributes.and_then(|attributes| attributes.get::<BlendField>());
+        Some(match rule {
+            Some(BlendField::Switch) => true,
+            _ if is_interpolated(a_part) => true,
+            Some(BlendField::Fields) => have_same_modes(a_part, b_part, attributes),
+            None => a_part.reflect_partial_eq(b_part).unwrap_or(false),
+        })
+    };
+    is_same_variant(a, b) && (0..).map_while(is_same).all(|is_same| is_same)
+}
+
+fn is_interpolated(value: &dyn PartialReflect) -> bool {
+    value.try_downcast_ref::<f32>().is_some()
+        || value.try_downcast_ref::<Color>().is_some()
+        || value.try_downcast_ref::<Vec2>().is_some()
+        || value.try_downcast_ref::<Vec3>().is_some()
 }
 
 #[cfg(test)]

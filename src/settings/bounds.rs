@@ -63,17 +63,3 @@ pub fn clamp_color(color: Color, default: Color) -> Color {
     }
     .into()
 }
-
-/// A near and a far distance in world units: near 1e-6 to 1e30, far 1e-6 to 1e36,
-/// exchanged if far is below near, and far at least 1.001 times near. What is not
-/// finite becomes 0.1 (near) or 1000 (far).
-pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
-    let near = clamp_or_default(near, 0.1, 1e-6, 1e30);
-    let far = clamp_or_default(far, 1000.0, 1e-6, 1e36);
-    let (near, far) = if near <= far {
-        (near, far)
-    } else {
-        (far, near)
-    };
-    (near, far.max(near * (1.0 + 1e-3)))
-}

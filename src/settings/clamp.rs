@@ -3,70 +3,102 @@
 use bevy::{
     color::Color,
     math::{Vec2, Vec3},
-    reflect::{PartialReflect, ReflectMut, ReflectRef, TypeInfo, Typed, structs::Struct},
+    reflect::{PartialReflect, attributes::CustomAttributes},
 };
 
-use super::{FieldRange, clamp_color, clamp_or_default, clamp_vec2_or_default};
+use super::{
+    FieldRange, clamp_color, clamp_or_default, clamp_vec2_or_default,
+    field::NotFinite,
+    parts::{attributes, is_same_variant, part, part_mut},
+};
 
-/// The value with every `f32`, `u32`, `Vec2`, `Vec3` and `Option<f32>` in the [`FieldRange`] of its
-/// field, if it has one. A number that is not finite becomes that of the type's default. Colours
-/// are clamped to what a display shows. Nested structs are clamped with the default of the outer
-/// type; other types, structs in options and fields of enums are not changed.
-pub fn clamp_fields<T: Struct + Typed + Default>(mut value: T) -> T {
-    clamp_struct(&mut value, &T::default());
+/// The value with every `f32`, `u32`, `Vec2` and `Vec3` in the [`FieldRange`] of its field, if it
+/// has one, also in nested structs, options and variants of enums. Colours are clamped to what a
+/// display shows. Lists and other types are not changed.
+///
+/// A number that is not finite becomes that of its attribute [`NotFinite`], else that of the outer
+/// type's default. If the default has another variant there, it becomes the least number of the
+/// range, and a colour becomes black.
+pub fn clamp_fields<T: PartialReflect + Default>(mut value: T) -> T {
+    clamp_parts(&mut value, Some(&T::default()), None);
     value
 }
 
-fn clamp_struct(value: &mut dyn Struct, default: &dyn Struct) {
-    let Some(TypeInfo::Struct(info)) = value.get_represented_type_info() else {
-        return;
-    };
-    for (i, field) in info.iter().enumerate() {
-        if let (Some(field_value), Some(default)) = (value.field_at_mut(i), default.field_at(i)) {
-            clamp_field(field_value, default, FieldRange::of(field));
-        }
-    }
-}
-
-fn clamp_field(
+fn clamp_parts(
     value: &mut dyn PartialReflect,
-    default: &dyn PartialReflect,
-    range: Option<FieldRange>,
+    default: Option<&dyn PartialReflect>,
+    outer: Option<&CustomAttributes>,
 ) {
-    if let (Some(color), Some(default)) = (
-        value.try_downcast_mut::<Color>(),
-        default.try_downcast_ref::<Color>(),
-    ) {
-        *color = clamp_color(*color, *default);
-    } else if let Some(range) = range {
-        clamp_number(value, default, range);
-    } else if let (ReflectMut::Struct(value), ReflectRef::Struct(default)) =
-        (value.reflect_mut(), default.reflect_ref())
-    {
-        clamp_struct(value, default);
+    let default = default.filter(|default| is_same_variant(value, *default));
+    for i in 0.. {
+        let attributes = attributes(value, i, outer);
+        let Some(field) = part_mut(value, i) else {
+            return;
+        };
+        clamp_part(field, default.and_then(|value| part(value, i)), attributes);
     }
 }
 
-fn clamp_number(value: &mut dyn PartialReflect, default: &dyn PartialReflect, range: FieldRange) {
+fn clamp_part(
+    value: &mut dyn PartialReflect,
+    default: Option<&dyn PartialReflect>,
+    attributes: Option<&CustomAttributes>,
+) {
+    if let Some(color) = value.try_downcast_mut::<Color>() {
+        let default = default.and_then(|value| value.try_downcast_ref::<Color>());
+        *color = clamp_color(*color, default.copied().unwrap_or(Color::BLACK));
+    } else if attributes.is_none_or(|attributes| !clamp_number(value, default, attributes)) {
+        clamp_parts(value, default, attributes);
+    }
+}
+
+/// Clamps a number that has a range. Returns whether it is one.
+fn clamp_number(
+    value: &mut dyn PartialReflect,
+    default: Option<&dyn PartialReflect>,
+    attributes: &CustomAttributes,
+) -> bool {
+    let Some(range) = attributes.get::<FieldRange>() else {
+        return false;
+    };
     // The attribute is a game's: a range upside down is the same range.
     let (least, most) = (range.min.min(range.max), range.max.max(range.min));
     let (low, high) = (least as f32, most as f32);
+    let not_finite = attributes.get::<NotFinite>().map(|number| number.0);
     if let Some(number) = value.try_downcast_mut::<f32>() {
-        let default = default.try_downcast_ref::<f32>().copied();
+        let default = not_finite.or_else(|| default?.try_downcast_ref().copied());
         *number = clamp_or_default(*number, default.unwrap_or(low), low, high);
     } else if let Some(number) = value.try_downcast_mut::<u32>() {
         *number = (*number).clamp(least as u32, most as u32);
     } else if let Some(vector) = value.try_downcast_mut::<Vec2>() {
-        let default = default.try_downcast_ref::<Vec2>().copied();
-        *vector = clamp_vec2_or_default(*vector, default.unwrap_or(Vec2::splat(low)), low, high);
+        let default = (not_finite.map(Vec2::splat))
+            .or_else(|| default?.try_downcast_ref().copied())
+            .unwrap_or(Vec2::splat(low));
+        *vector = clamp_vec2_or_default(*vector, default, low, high);
     } else if let Some(vector) = value.try_downcast_mut::<Vec3>() {
-        let default = default.try_downcast_ref::<Vec3>().copied();
-        let default = default.unwrap_or(Vec3::splat(low));
+        let default = (not_finite.map(Vec3::splat))
+            .or_else(|| default?.try_downcast_ref().copied())
+            .unwrap_or(Vec3::splat(low));
         *vector = Vec3::from_array(std::array::from_fn(|i| {
             clamp_or_default(vector[i], default[i], low, high)
         }));
-    } else if let Some(Some(number)) = value.try_downcast_mut::<Option<f32>>() {
-        let default = default.try_downcast_ref::<Option<f32>>().copied().flatten();
-        *number = clamp_or_default(*number, default.unwrap_or(low), low, high);
+    } else {
+        return false;
     }
+    true
 }
+
+/// Gives types the method `sanitized`.
+macro_rules! impl_sanitized {
+    ($($type:ty),+) => {$(
+        impl $type {
+            /// The settings that are used: every number is clamped to its documented range, and
+            /// colours to what a display shows. What is not finite is replaced by its default.
+            #[must_use]
+            pub fn sanitized(self) -> Self {
+                $crate::settings::clamp_fields(self)
+            }
+        }
+    )+};
+}
+pub(crate) use impl_sanitized;

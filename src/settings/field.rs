@@ -1,4 +1,5 @@
-//! Attributes on the fields of an effect: range, unit, and how a field is blended.
+//! Attributes on the fields of an effect: range, unit, what replaces a number that is not finite,
+//! and how a field is blended.
 
 use bevy::reflect::{NamedField, Reflect};
 
@@ -60,6 +61,12 @@ impl FieldRange {
     }
 }
 
+/// What a number becomes that is not finite, each component of a vector. Without this attribute, it
+/// becomes that of the default of the type that is clamped, which has no number for a field of
+/// another variant, nor of an option that is `None`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NotFinite(pub f32);
+
 /// Marks a colour field whose hue matters most: tools show a hue wheel for it.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HueWheel;
@@ -74,4 +81,8 @@ pub struct HueWheel;
 pub enum BlendField {
     /// The field takes its new value halfway through the transition, without a fade.
     Switch,
+    /// The fields of the field are blended, each as its own attributes say. An enum or option that
+    /// changes its variant is a mode. The field of a variant that has no attributes, such as that
+    /// of `Some`, is blended by those of the enum.
+    Fields,
 }

@@ -6,15 +6,16 @@ mod clamp;
 pub mod color_serde;
 mod equations;
 mod field;
+mod parts;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use blend::{Blend, crossfade_weight};
+pub(crate) use blend::{Blend, blend_fields, crossfade, crossfade_weight, mix_fields, same_modes};
 pub use blend::{blend_color, blend_ratio};
-pub(crate) use bounds::ordered_planes;
 pub use bounds::{clamp_color, clamp_option_or_default, clamp_or_default, clamp_vec2_or_default};
-pub(crate) use clamp::clamp_fields;
+pub(crate) use clamp::{clamp_fields, impl_sanitized};
 pub use equations::Equations;
+pub(crate) use field::NotFinite;
 pub use field::{BlendField, FieldRange, HueWheel};
 
 use bevy::{

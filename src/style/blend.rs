@@ -1,12 +1,10 @@
 //! What lies between two styles.
 
-use bevy::math::FloatExt;
-
 use super::ComicStyle;
 use crate::{
-    depth::{DepthMap, DepthMapping, RangeSmoothing},
+    depth::{DepthMap, RangeSmoothing},
     effect::EffectSet,
-    settings::blend_ratio,
+    settings::blend_fields,
 };
 
 impl ComicStyle {
@@ -80,45 +78,12 @@ impl ComicStyle {
     }
 }
 
+/// Without smoothing, a map is blended as with one that changes nothing.
 fn mixed_map(a: DepthMap, b: DepthMap, t: f32) -> DepthMap {
-    let modes = if t < 0.5 { a } else { b };
-    let mapping = match (a.mapping, b.mapping) {
-        (
-            DepthMapping::Fixed { from, to },
-            DepthMapping::Fixed {
-                from: from_b,
-                to: to_b,
-            },
-        ) => DepthMapping::Fixed {
-            from: blend_ratio(from, from_b, t),
-            to: blend_ratio(to, to_b, t),
-        },
-        (
-            DepthMapping::FixedLogarithmic { from, to },
-            DepthMapping::FixedLogarithmic {
-                from: from_b,
-                to: to_b,
-            },
-        ) => DepthMapping::FixedLogarithmic {
-            from: blend_ratio(from, from_b, t),
-            to: blend_ratio(to, to_b, t),
-        },
-        _ => modes.mapping,
-    };
-    let [s_a, s_b] = [a, b].map(|map| map.smoothing.unwrap_or(RangeSmoothing::OFF));
-    let smoothing = (a.smoothing.is_some() || b.smoothing.is_some()).then(|| RangeSmoothing {
-        outliers: s_a.outliers.lerp(s_b.outliers, t),
-        despike: if t < 0.5 { s_a.despike } else { s_b.despike },
-        hysteresis: s_a.hysteresis.lerp(s_b.hysteresis, t),
-        expand: s_a.expand.lerp(s_b.expand, t),
-        shrink: s_a.shrink.lerp(s_b.shrink, t),
-    });
+    let is_smoothed = a.smoothing.is_some() || b.smoothing.is_some();
+    let [from, to] = [a, b].map(|map| map.smoothing.unwrap_or(RangeSmoothing::OFF));
     DepthMap {
-        mapping,
-        sky_gap: a.sky_gap.lerp(b.sky_gap, t),
-        floor: blend_ratio(a.floor, b.floor, t),
-        orthographic_floor: blend_ratio(a.orthographic_floor, b.orthographic_floor, t),
-        smoothing,
-        ..modes
+        smoothing: is_smoothed.then(|| blend_fields(&from, &to, t)),
+        ..blend_fields(&a, &b, t)
     }
 }

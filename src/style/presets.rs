@@ -235,7 +235,10 @@ mod tests {
             let first = preset.source.lines().next().unwrap_or_default();
             let intent = first.strip_prefix("// ").unwrap_or_default();
             assert!(intent.contains(". For "), "{preset}: {first:?}");
-            assert!(preset.style().get::<crate::Contours>().is_none(), "{preset}");
+            assert!(
+                preset.style().get::<crate::Contours>().is_none(),
+                "{preset}"
+            );
         }
     }
 

@@ -7,7 +7,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::RampStop;
-use crate::settings::{FieldRange, clamp_or_default};
+use crate::settings::{FieldRange, NotFinite, impl_sanitized};
 
 /// A second ramp of a [`Ramp`](crate::toon::Ramp), and where it is used: the ramp itself applies
 /// where there is full detail, this one where there is none (X-Toon: Barla, Thollot and Markosian
@@ -39,30 +39,30 @@ pub enum DetailAxis {
     /// Near the eye: `1 - ln(z / from) / ln ratio`.
     Depth {
         /// All detail is nearer than this. Range 1e-4 to 1e6, default 1.
-        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"), @NotFinite(1.0))]
         from: f32,
         /// No detail is farther than this multiple of `from`. Range 1.01 to 1e6, default 10.
-        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6), @NotFinite(10.0))]
         ratio: f32,
     },
     /// At a distance: `1 - (|ln(z / distance)| - ln(1 + clear)) / ln ratio`.
     Focus {
         /// What is in focus. Range 1e-4 to 1e6, default 5.
-        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"), @NotFinite(5.0))]
         distance: f32,
         /// Half width of the range of full detail, as a fraction of `distance`. Range 0 to 10,
         /// default 0.15.
-        #[reflect(@FieldRange::linear(0.0, 10.0))]
+        #[reflect(@FieldRange::linear(0.0, 10.0), @NotFinite(0.15))]
         clear: f32,
         /// Ratio of distances over which detail falls to none, counted from the end of that range.
         /// Range 1.01 to 1e6, default 3.
-        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6), @NotFinite(3.0))]
         ratio: f32,
     },
     /// Where surfaces face the eye: `|n.v|^power`. The second ramp is that of rims.
     Rim {
         /// Range 0.05 to 8, default 1. The larger, the wider is the rim.
-        #[reflect(@FieldRange::logarithmic(0.05, 8.0))]
+        #[reflect(@FieldRange::logarithmic(0.05, 8.0), @NotFinite(1.0))]
         power: f32,
     },
     /// Where surfaces reflect the light: `max(r.v, 0)^power`, with the reflected light `r`. The
@@ -70,13 +70,13 @@ pub enum DetailAxis {
     /// [`RampMode::LightFraction`](crate::toon::RampMode::LightFraction), the mean of all lights.
     Highlight {
         /// Range 1 to 200, default 20. The larger, the smaller is the highlight.
-        #[reflect(@FieldRange::logarithmic(1.0, 200.0))]
+        #[reflect(@FieldRange::logarithmic(1.0, 200.0), @NotFinite(20.0))]
         power: f32,
     },
     /// The same everywhere.
     Constant(
         /// 1 is all detail, 0 none. Range 0 to 1, default 1.
-        #[reflect(@FieldRange::FRACTION)]
+        #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
         f32,
     ),
     /// Near the eye, between the nearest and the farthest thing that the camera sees:
@@ -114,36 +114,6 @@ impl Default for DetailAxis {
 }
 
 impl DetailAxis {
-    /// Every number in its documented range; one that is not finite is replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        let distance = |z, default| clamp_or_default(z, default, 1e-4, 1e6);
-        let ratio = |r, default| clamp_or_default(r, default, 1.01, 1e6);
-        match self {
-            Self::Depth { from, ratio: r } => Self::Depth {
-                from: distance(from, 1.0),
-                ratio: ratio(r, 10.0),
-            },
-            Self::Focus {
-                distance: z,
-                clear,
-                ratio: r,
-            } => Self::Focus {
-                distance: distance(z, 5.0),
-                clear: clamp_or_default(clear, 0.15, 0.0, 10.0),
-                ratio: ratio(r, 3.0),
-            },
-            Self::Rim { power } => Self::Rim {
-                power: clamp_or_default(power, 1.0, 0.05, 8.0),
-            },
-            Self::Highlight { power } => Self::Highlight {
-                power: clamp_or_default(power, 20.0, 1.0, 200.0),
-            },
-            Self::Constant(detail) => Self::Constant(clamp_or_default(detail, 1.0, 0.0, 1.0)),
-            Self::VisibleRange => Self::VisibleRange,
-        }
-    }
-
     /// The shader definition.
     pub(super) fn definition(self) -> &'static str {
         match self {
@@ -156,6 +126,8 @@ impl DetailAxis {
         }
     }
 }
+
+impl_sanitized!(DetailAxis);
 
 /// `Detail` in `detail.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]

@@ -215,15 +215,15 @@ impl ToonLight {
     /// and a number that is not finite is replaced by its default.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let light = clamp_fields(self);
-        Self {
-            ramp: light.ramp.map(Ramp::sanitized),
-            stylized_highlight: light.stylized_highlight.map(StylizedHighlight::sanitized),
-            proxy: light.proxy.map(ShadingProxy::sanitized),
-            rim: light.rim.map(Rim::sanitized),
-            hatching: light.hatching.map(Effect::sanitized),
-            ..light
-        }
+        // These first: the default of the light has none of them.
+        clamp_fields(Self {
+            ramp: self.ramp.map(Ramp::sanitized),
+            stylized_highlight: self.stylized_highlight.map(StylizedHighlight::sanitized),
+            proxy: self.proxy.map(ShadingProxy::sanitized),
+            rim: self.rim.map(Rim::sanitized),
+            hatching: self.hatching.map(Effect::sanitized),
+            ..self
+        })
     }
 }
 

@@ -9,7 +9,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, clamp_fields, clamp_or_default};
+use crate::settings::{FieldRange, NotFinite, impl_sanitized};
 
 /// Shades a mesh as if it had a simpler form, so that faces, bushes and clouds have large areas of
 /// one tone (Barla, Thollot and Markosian 2006). Lines, shadow maps and the silhouette stay those
@@ -47,19 +47,19 @@ pub enum ProxyShape {
     /// An ellipsoid: heads, bushes, clouds.
     Ellipsoid {
         /// Its middle, in units of the mesh. Range -1e6 to 1e6.
-        #[reflect(@FieldRange::linear(-1e6, 1e6))]
+        #[reflect(@FieldRange::linear(-1e6, 1e6), @NotFinite(0.0))]
         center: Vec3,
         /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
-        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6), @NotFinite(1.0))]
         half_size: Vec3,
     },
     /// A cylinder along the longest axis of this box: limbs, trunks.
     Cylinder {
         /// Its middle, in units of the mesh. Range -1e6 to 1e6.
-        #[reflect(@FieldRange::linear(-1e6, 1e6))]
+        #[reflect(@FieldRange::linear(-1e6, 1e6), @NotFinite(0.0))]
         center: Vec3,
         /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
-        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6), @NotFinite(1.0))]
         half_size: Vec3,
     },
     /// A plane that faces upwards in the world: grass and leaves look like the ground.
@@ -117,27 +117,6 @@ impl ProxyShape {
         })
     }
 
-    fn sanitized(self) -> Self {
-        let place =
-            |v: Vec3| Vec3::from_array(v.to_array().map(|x| clamp_or_default(x, 0.0, -1e6, 1e6)));
-        let size =
-            |v: Vec3| Vec3::from_array(v.to_array().map(|x| clamp_or_default(x, 1.0, 1e-4, 1e6)));
-        match self {
-            Self::Ellipsoid { center, half_size } => Self::Ellipsoid {
-                center: place(center),
-                half_size: size(half_size),
-            },
-            Self::Cylinder { center, half_size } => Self::Cylinder {
-                center: place(center),
-                half_size: size(half_size),
-            },
-            Self::Up => Self::Up,
-            Self::Smoothed { rounds } => Self::Smoothed {
-                rounds: rounds.min(50),
-            },
-        }
-    }
-
     /// The middle, and the factor of each axis.
     fn weights(self) -> (Vec3, Vec3) {
         match self {
@@ -182,16 +161,7 @@ impl ProxyKey {
     }
 }
 
-impl ShadingProxy {
-    /// Every number in its documented range; one that is not finite is replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            shape: self.shape.sanitized(),
-            ..clamp_fields(self)
-        }
-    }
-}
+impl_sanitized!(ShadingProxy);
 
 /// `Proxy` in `proxy.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]

@@ -11,7 +11,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::{RampDetail, RampStop};
-use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb, oklab};
+use crate::settings::{FieldRange, clamp_fields, linear_rgb, oklab};
 
 /// The tones of a [`ToonMaterial`](crate::ToonMaterial), from shade to light (Lake et al.
 /// 2000).
@@ -114,16 +114,13 @@ impl Ramp {
     /// clamped to its documented range, and a number that is not finite is replaced by its
     /// default. A ramp without stops becomes the default one.
     #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            stops: sanitized(self.stops, || Self::default().stops),
-            keep_intensity: clamp_or_default(self.keep_intensity, 0.5, 0.0, 1.0),
-            detail: self.detail.map(|detail| RampDetail {
-                plain: sanitized(detail.plain, || RampDetail::default().plain),
-                axis: detail.axis.sanitized(),
-            }),
-            ..self
+    pub fn sanitized(mut self) -> Self {
+        self.stops = sanitized(self.stops, || Self::default().stops);
+        if let Some(detail) = &mut self.detail {
+            let plain = std::mem::take(&mut detail.plain);
+            detail.plain = sanitized(plain, || RampDetail::default().plain);
         }
+        clamp_fields(self)
     }
 
     /// Stops of the longer of both ramps.
@@ -140,11 +137,8 @@ fn sanitized(mut stops: Vec<RampStop>, default: fn() -> Vec<RampStop>) -> Vec<Ra
         stops = default();
     }
     stops.truncate(Ramp::MOST_STOPS);
-    let default = RampStop::default();
     for stop in &mut stops {
-        stop.at = clamp_or_default(stop.at, default.at, 0.0, 1.0);
-        stop.color = clamp_color(stop.color, default.color);
-        stop.softness = clamp_or_default(stop.softness, default.softness, 0.0, 1.0);
+        *stop = clamp_fields(*stop);
     }
     stops.sort_by(|a, b| a.at.total_cmp(&b.at));
     stops
@@ -261,8 +255,19 @@ mod tests {
 
     #[test]
     fn stops_are_sorted_clamped_and_at_most_eight() {
-        let stops = (0..20).map(|k| RampStop::new(1.0 - 0.1 * k as f32, Color::WHITE));
-        let ramp = Ramp::new(stops).sanitized();
+        let ramp = |stops: Vec<RampStop>, plain| Ramp {
+            detail: Some(RampDetail {
+                plain,
+                ..RampDetail::default()
+            }),
+            ..Ramp::new(stops)
+        };
+        let stop = |k: u32| RampStop::new(1.0 - 0.1 * k as f32, Color::WHITE);
+        let stops: Vec<_> = (0..20).map(stop).collect();
+        let default = ramp(Ramp::default().stops, RampDetail::default().plain);
+        assert_eq!(ramp(Vec::new(), Vec::new()).sanitized(), default);
+        let ramp = ramp(stops.clone(), stops).sanitized();
+        assert_eq!(Some(&ramp.stops), ramp.detail.as_ref().map(|d| &d.plain));
         assert_eq!(ramp.stops.len(), Ramp::MOST_STOPS);
         assert!(ramp.stops.is_sorted_by(|a, b| a.at <= b.at));
         let bad = RampStop {
@@ -276,6 +281,5 @@ mod tests {
         assert_eq!(ramp.stops[0], RampStop::default());
         assert_eq!(ramp.stops[1], RampStop::new(0.0, Color::BLACK).soft(1.0));
         assert_eq!(ramp.keep_intensity, 0.5);
-        assert_eq!(Ramp::new([]).sanitized(), Ramp::default());
     }
 }

@@ -8,7 +8,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, clamp_fields, clamp_or_default, color_serde, linear_rgb};
+use crate::settings::{FieldRange, NotFinite, color_serde, impl_sanitized, linear_rgb};
 
 /// A rim of light along the edges of an object, as from a light behind it.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ pub enum RimWidth {
     /// with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
     Pixels(
         /// Width in physical pixels. Range 1 to 64, default 3.
-        #[reflect(@FieldRange::linear(1.0, 64.0).unit("physical px"))]
+        #[reflect(@FieldRange::linear(1.0, 64.0).unit("physical px"), @NotFinite(3.0))]
         f32,
     ),
 }
@@ -77,24 +77,7 @@ impl Default for Rim {
     }
 }
 
-impl Rim {
-    /// Every number in its documented range; one that is not finite is replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            width: match self.width {
-                RimWidth::Facing { fraction, softness } => RimWidth::Facing {
-                    fraction: clamp_or_default(fraction, 0.35, 0.0, 1.0),
-                    softness: clamp_or_default(softness, 0.0, 0.0, 1.0),
-                },
-                RimWidth::Pixels(pixels) => {
-                    RimWidth::Pixels(clamp_or_default(pixels, 3.0, 1.0, 64.0))
-                }
-            },
-            ..clamp_fields(self)
-        }
-    }
-}
+impl_sanitized!(Rim);
 
 /// `Rim` in `rim.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]

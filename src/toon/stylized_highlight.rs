@@ -7,7 +7,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, clamp_fields};
+use crate::settings::{FieldRange, impl_sanitized};
 
 /// Draws the highlight of the brightest light in a stylized shape: a window, a star, a pair of dots
 /// (Anjyo and Hiramitsu 2003).
@@ -120,13 +120,7 @@ impl Default for StylizedHighlight {
     }
 }
 
-impl StylizedHighlight {
-    /// Every number in its documented range; one that is not finite is replaced by its default.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
-}
+impl_sanitized!(StylizedHighlight);
 
 impl HighlightFrame {
     /// The shader definition.

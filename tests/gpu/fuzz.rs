@@ -131,7 +131,9 @@ fn large_files_of_the_previous_version_are_read_in_time() {
 #[test]
 fn parsing_a_shading_never_panics() {
     let kinds = crate::toon_shading::all_kinds();
-    let written = kinds.iter().map(|shading| shading.to_ron().expect("written"));
+    let written = kinds
+        .iter()
+        .map(|shading| shading.to_ron().expect("written"));
     let mut shown = String::new();
     let read = |text: &str| ToonShading::from_ron(text).ok();
     read_texts(Texts::new(2, written), read, |shading| {

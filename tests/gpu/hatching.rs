@@ -415,7 +415,10 @@ fn simplification_changes_nothing_on_large_surfaces() {
         small.put(Cuboid::from_length(0.9), material, at);
         let [plain, simplified] = plain_and_simplified(&mut small);
         let apart = differ(&plain, &simplified, 0.02);
-        println!("{degrees} degrees: {apart} of {} pixels differ", plain.len());
+        println!(
+            "{degrees} degrees: {apart} of {} pixels differ",
+            plain.len()
+        );
         assert!(apart < plain.len() / 200, "{degrees} degrees: {apart}");
     }
     assert_eq!(small.errors(), 0);
@@ -451,7 +454,10 @@ fn what_is_small_is_more_even() {
         (middle, mean(&squares).sqrt())
     });
     println!("mean and spread: {plain:.3?}, {simplified:.3?}");
-    assert!((plain.0 - simplified.0).abs() < 0.03, "{plain:?}, {simplified:?}");
+    assert!(
+        (plain.0 - simplified.0).abs() < 0.03,
+        "{plain:?}, {simplified:?}"
+    );
     assert!(simplified.1 < plain.1, "{plain:?}, {simplified:?}");
     assert_eq!(small.errors(), 0);
 }

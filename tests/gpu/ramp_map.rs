@@ -422,7 +422,11 @@ fn shadings_name_their_images_by_path() {
     // Without the component the material stays; the shading is written with the path.
     small.world().entity_mut(mesh).remove::<ToonShadingHandle>();
     let shadings = small.world().resource::<Assets<ToonShading>>();
-    let text = shadings.get(&shading).expect("loaded").to_ron().expect("text");
+    let text = shadings
+        .get(&shading)
+        .expect("loaded")
+        .to_ron()
+        .expect("text");
     assert!(text.contains("ramp_map: \"tones.png\""), "{text}");
     assert_eq!(small.errors(), 0);
 }

@@ -9,8 +9,8 @@ use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::Studio,
     style_work::{
-        LEAST_APART, LEAST_CONTRAST, StyleBench, MOST_CLIPPED, MOST_FLICKER, MOST_FRAGMENTS,
-        Measures,
+        LEAST_APART, LEAST_CONTRAST, MOST_CLIPPED, MOST_FLICKER, MOST_FRAGMENTS, Measures,
+        StyleBench,
     },
 };
 use image::RgbaImage;

@@ -65,7 +65,11 @@ fn lightness_error(mode: HarmonyMode) -> f64 {
 /// Tones, jumps and moire of all screens.
 fn screens(run: &Run) -> Table {
     let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
-    let periods = if run.quick { &CELL_SIZES[2..3] } else { &CELL_SIZES };
+    let periods = if run.quick {
+        &CELL_SIZES[2..3]
+    } else {
+        &CELL_SIZES
+    };
     for shape in run.some(1, SHAPES) {
         for &period in periods {
             let (tone, ..) = tone_error(shape, period);

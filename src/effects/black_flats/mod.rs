@@ -11,10 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
-    settings::{
-        FieldRange, blend_color, blend_ratio, clamp_fields, clamp_option_or_default, color_serde,
-        linear_rgb,
-    },
+    settings::{BlendField, FieldRange, NotFinite, color_serde, linear_rgb, mix_fields},
 };
 
 /// Fills steep slopes of the depth map and dark areas with solid ink (\[CS\] 3.2,
@@ -28,7 +25,7 @@ pub struct BlackFlats {
     /// the change of the map over 1/512 of the viewport's height. Range 1e-6 to 100,
     /// default `None` (no slope is filled). Source: the larger threshold of \[CS\]
     /// 3.2.
-    #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
+    #[reflect(@FieldRange::logarithmic(1e-6, 100.0), @NotFinite(0.02), @BlendField::Fields)]
     pub slope: Option<f32>,
     /// Fills areas of the unstyled picture whose HSV value, in display codes, is
     /// below this threshold; `None` fills no dark areas. Range 0 to 1, default 0.25.
@@ -52,7 +49,6 @@ pub struct BlackFlats {
     pub opacity: f32,
 }
 
-const DEFAULT_SLOPE: f32 = 0.02;
 const DEFAULT_VALUE: f32 = 0.25;
 
 impl Default for BlackFlats {
@@ -85,13 +81,6 @@ impl Effect for BlackFlats {
         settings: Some("BlackFlats"),
     };
     type Uniform = BlackFlatsUniform;
-
-    fn sanitized(self) -> Self {
-        Self {
-            slope: clamp_option_or_default(self.slope, DEFAULT_SLOPE, 1e-6, 100.0),
-            ..clamp_fields(self)
-        }
-    }
 
     fn strength(&self) -> f32 {
         if self.slope.is_none() && self.value.unwrap_or(0.0) == 0.0 {
@@ -154,15 +143,10 @@ impl Effect for BlackFlats {
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
         let values = [self.value, other.value].map(|value| value.unwrap_or(0.0));
-        let slopes = self.slope.zip(other.slope);
         Self {
-            slope: slopes.map_or(self.slope, |(a, b)| Some(blend_ratio(a, b, t))),
             value: (self.value.is_some() || other.value.is_some())
                 .then(|| values[0].lerp(values[1], t)),
-            depth_weight: self.depth_weight.lerp(other.depth_weight, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: blend_color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
+            ..mix_fields(self, other, t)
         }
     }
 }

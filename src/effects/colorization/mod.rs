@@ -6,7 +6,7 @@ mod oklab;
 use bevy::{
     color::{Color, ColorToComponents, Hsva, Oklaba},
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{FloatExt, Vec2},
+    math::Vec2,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
-    settings::{Equations, FieldRange, HueWheel, blend_color, color_serde},
+    settings::{Equations, FieldRange, HueWheel, color_serde, mix_fields, same_modes},
 };
 
 /// Colours the picture with the hue of an atmosphere, everywhere or increasingly
@@ -184,19 +184,18 @@ impl Effect for Colorization {
         // With the faithful equations, hues between two colours are unrelated to both, so
         // colours are not interpolated but count as modes.
         let colors_mix = !self.is_faithful() || self.color == other.color;
-        (self.mode, self.equations) == (other.mode, other.equations) && colors_mix
+        colors_mix && same_modes(self, other)
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
-        let color = if self.is_faithful() {
-            self.color
+        let mixed = mix_fields(self, other, t);
+        if self.is_faithful() {
+            Self {
+                color: self.color,
+                ..mixed
+            }
         } else {
-            blend_color(self.color, other.color, t)
-        };
-        Self {
-            color,
-            amount: self.amount.lerp(other.amount, t),
-            ..*self
+            mixed
         }
     }
 }

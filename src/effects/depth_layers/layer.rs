@@ -2,13 +2,13 @@
 
 use bevy::{
     color::{Color, ColorToComponents, Oklaba},
-    math::{FloatExt, Vec2},
+    math::Vec2,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, HueWheel, blend_color, clamp_fields, color_serde};
+use crate::settings::{BlendField, FieldRange, HueWheel, NotFinite, color_serde, impl_sanitized};
 
 /// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). The default changes
 /// nothing.
@@ -17,7 +17,7 @@ use crate::settings::{FieldRange, HueWheel, blend_color, clamp_fields, color_ser
 #[serde(default, deny_unknown_fields)]
 pub struct DepthLayer {
     /// Factor of the saturation. Range 0 (grey) to 2, default 1.
-    #[reflect(@FieldRange::linear(0.0, 2.0))]
+    #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.0))]
     pub saturation: f32,
     /// Colour that the layer is tinted with: its hue and chroma in `OKLab`, at the lightness of the
     /// picture. Default: `#7fa6c9`, a hazy blue. Components are clamped to what a display shows;
@@ -27,25 +27,25 @@ pub struct DepthLayer {
     pub tint: Color,
     /// How much of the colour comes from `tint`. At 1, only the lightness of the picture is left.
     /// Range 0 to 1, default 0.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(0.0))]
     pub tint_amount: f32,
     /// Factor of the contrast, about a lightness of 0.5 in `OKLab`. Range 0 to 2, default 1.
-    #[reflect(@FieldRange::linear(0.0, 2.0))]
+    #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.0))]
     pub contrast: f32,
     /// Lightness in `OKLab` that is added after that: positive is brighter. Range -0.5 to 0.5,
     /// default 0.
-    #[reflect(@FieldRange::linear(-0.5, 0.5))]
+    #[reflect(@FieldRange::linear(-0.5, 0.5), @NotFinite(0.0))]
     pub brightness: f32,
     /// Number of flat tones that the lightness is divided into, before the contrast. Range 0 (all
     /// tones) to 8, default 0.
-    #[reflect(@FieldRange::linear(0.0, 8.0))]
+    #[reflect(@FieldRange::linear(0.0, 8.0), @BlendField::Switch)]
     pub bands: u32,
     /// Factor of the width of lines; below 0.6 physical pixels, they become fainter instead. Lines
     /// belong to the surface in front. Range 0 to 1, default 1.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub line_width: f32,
     /// Factor of the opacity of lines. Range 0 (no lines) to 1, default 1.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub line_opacity: f32,
     /// Colour that lines take instead of theirs, see `line_color_amount`. Lines belong to the
     /// surface in front; those of the faithful equations to what they are drawn on. Objects whose
@@ -91,30 +91,6 @@ impl DepthLayer {
         halftone: 1.0,
     };
 
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
-
-    /// Numbers and colours at fraction `t` between the two; the number of tones of `self`.
-    pub(super) fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            saturation: self.saturation.lerp(other.saturation, t),
-            tint: blend_color(self.tint, other.tint, t),
-            tint_amount: self.tint_amount.lerp(other.tint_amount, t),
-            contrast: self.contrast.lerp(other.contrast, t),
-            brightness: self.brightness.lerp(other.brightness, t),
-            bands: self.bands,
-            line_width: self.line_width.lerp(other.line_width, t),
-            line_opacity: self.line_opacity.lerp(other.line_opacity, t),
-            line_color: blend_color(self.line_color, other.line_color, t),
-            line_color_amount: self.line_color_amount.lerp(other.line_color_amount, t),
-            hatching: self.hatching.lerp(other.hatching, t),
-            halftone: self.halftone.lerp(other.halftone, t),
-        }
-    }
-
     pub(super) fn colors(&self) -> LayerColorsUniform {
         let [_, a, b, _] = Oklaba::from(self.tint).to_f32_array();
         LayerColorsUniform {
@@ -127,6 +103,8 @@ impl DepthLayer {
         }
     }
 }
+
+impl_sanitized!(DepthLayer);
 
 impl Default for DepthLayer {
     fn default() -> Self {

@@ -4,7 +4,7 @@ mod layer;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{FloatExt, Vec2},
+    math::Vec2,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -16,7 +16,7 @@ use layer::LayerColorsUniform;
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants},
     lines::{LineLayers, LineModifiers},
-    settings::{FieldRange, clamp_fields},
+    settings::{BlendField, FieldRange},
 };
 
 /// Divides the picture into foreground, middle and background, and gives each layer its own colours
@@ -30,10 +30,13 @@ use crate::{
 #[serde(default, deny_unknown_fields)]
 pub struct DepthLayers {
     /// Colours and lines of the foreground. Default: unchanged.
+    #[reflect(@BlendField::Fields)]
     pub foreground: DepthLayer,
     /// Colours and lines of the middle layer. Default: a little paler and bluer.
+    #[reflect(@BlendField::Fields)]
     pub middle: DepthLayer,
     /// Colours and lines of the background and of the sky. Default: pale, hazy and soft.
+    #[reflect(@BlendField::Fields)]
     pub background: DepthLayer,
     /// What belongs to one layer as a whole. Default: [`Granularity::Object`].
     pub granularity: Granularity,
@@ -127,15 +130,6 @@ impl Effect for DepthLayers {
     });
     type Uniform = DepthLayersUniform;
 
-    fn sanitized(self) -> Self {
-        Self {
-            foreground: self.foreground.sanitized(),
-            middle: self.middle.sanitized(),
-            background: self.background.sanitized(),
-            ..clamp_fields(self)
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -180,24 +174,6 @@ impl Effect for DepthLayers {
             softness: self.softness,
             amount: self.amount,
         }
-    }
-
-    fn mixed(&self, other: &Self, t: f32) -> Self {
-        Self {
-            foreground: self.foreground.mixed(other.foreground, t),
-            middle: self.middle.mixed(other.middle, t),
-            background: self.background.mixed(other.background, t),
-            granularity: self.granularity,
-            borders: self.borders,
-            foreground_end: self.foreground_end.lerp(other.foreground_end, t),
-            background_start: self.background_start.lerp(other.background_start, t),
-            softness: self.softness.lerp(other.softness, t),
-            amount: self.amount.lerp(other.amount, t),
-        }
-    }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        (self.granularity, self.borders) == (other.granularity, other.borders)
     }
 }
 

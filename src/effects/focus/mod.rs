@@ -38,7 +38,7 @@ pub struct Focus {
     /// 10.
     #[reflect(@FieldRange::logarithmic(0.01, 100_000.0))]
     pub distance: f32,
-    /// Range around the focus in which everything is sharp, as the natural logarithm of the ratio
+    /// Distances around the focus at which everything is sharp, as the natural logarithm of the ratio
     /// of distances: 0.15 is from 14 % nearer to 16 % farther. Range 0 to 4, default 0.15.
     #[reflect(@FieldRange::linear(0.0, 4.0))]
     pub clear: f32,

@@ -4,12 +4,9 @@
 pub use crate::lines::Outlines;
 
 use crate::{
-    effect::{
-        AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, NoUniform,
-        mix_fields,
-    },
+    effect::{AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, NoUniform},
     lines::{Creases, EdgeStyle, LineWeight, ObjectEdges, Silhouettes},
-    settings::{Blend, clamp_fields},
+    settings::{Blend, blend_fields},
 };
 
 impl Effect for Outlines {
@@ -21,16 +18,6 @@ impl Effect for Outlines {
         settings: None,
     };
     type Uniform = NoUniform;
-
-    fn sanitized(self) -> Self {
-        Self {
-            silhouettes: self.silhouettes.map(Silhouettes::sanitized),
-            creases: self.creases.map(Creases::sanitized),
-            objects: self.objects.map(ObjectEdges::sanitized),
-            color: self.color.sanitized(),
-            ..clamp_fields(self)
-        }
-    }
 
     fn strength(&self) -> f32 {
         let lines = self.visible();
@@ -104,22 +91,11 @@ impl Effect for Outlines {
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
-        let later = if t < 0.5 { self } else { other };
         Self {
             silhouettes: Silhouettes::blend(self.silhouettes, other.silhouettes, t),
             creases: Creases::blend(self.creases, other.creases, t),
             objects: ObjectEdges::blend(self.objects, other.objects, t),
-            weight: self.weight.mixed(other.weight, t),
-            boil: self.boil.mixed(other.boil, t),
-            color: self.color.mixed(other.color, t),
-            min_length: later.min_length,
-            gap_closing: later.gap_closing,
-            hold_frames: later.hold_frames,
-            response: later.response,
-            smooth: later.smooth,
-            edge: later.edge,
-            fog: later.fog,
-            ..mix_fields(self, other, t)
+            ..blend_fields(self, other, t)
         }
     }
 
@@ -138,28 +114,6 @@ impl Effect for Outlines {
                 ..self.weight
             },
             ..self
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Whole numbers of any size are clamped to their documented ranges.
-    #[test]
-    fn counts_are_clamped() {
-        for n in [0, 1, 2, 3, 4, 8, 9, u32::MAX] {
-            let outlines = Outlines {
-                min_length: n,
-                gap_closing: n,
-                hold_frames: n,
-                ..Outlines::default()
-            };
-            let found = outlines.sanitized();
-            assert_eq!(found.min_length, n.clamp(1, 8));
-            assert_eq!(found.gap_closing, n.min(3));
-            assert_eq!(found.hold_frames, n.min(8));
         }
     }
 }

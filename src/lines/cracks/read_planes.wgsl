@@ -58,16 +58,16 @@ fn load_along(g: Grid, south: bool, word: i32, across: i32) -> u32 {
 
 // Whether a crack, see chain.wgsl, is part of a line: 1 or 0.
 fn crack_bit(g: Grid, crack: vec3<i32>) -> u32 {
-    let from = select(crack.yx, crack.xy, crack.z == 1);
-    return (load_along(g, crack.z == 1, from.x >> 5u, from.y) >> u32(from.x & 31)) & 1u;
+    let place = select(crack.yx, crack.xy, crack.z == 1);
+    return (load_along(g, crack.z == 1, place.x >> 5u, place.y) >> u32(place.x & 31)) & 1u;
 }
 
 // The same of the 32 cracks in a row that begin with a crack: bit 0 is that one.
 fn cracks_from(g: Grid, crack: vec3<i32>) -> u32 {
     let south = crack.z == 1;
-    let from = select(crack.yx, crack.xy, south);
-    let word = from.x >> 5u;
-    return across_words(load_along(g, south, word, from.y), load_along(g, south, word + 1, from.y), u32(from.x & 31));
+    let place = select(crack.yx, crack.xy, south);
+    let word = place.x >> 5u;
+    return across_words(load_along(g, south, word, place.y), load_along(g, south, word + 1, place.y), u32(place.x & 31));
 }
 
 // Which of the four cracks at a corner are parts of lines: bit 0 and 1 above and below the

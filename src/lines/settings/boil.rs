@@ -1,7 +1,6 @@
 //! Lines that are drawn again several times a second.
 
 use bevy::{
-    math::FloatExt,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -9,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clock::drawing_seed,
-    settings::{FieldRange, clamp_fields},
+    settings::{BlendField, FieldRange, impl_sanitized},
 };
 
 /// Displaces lines by noise that changes several times a second, as if each drawing of an
@@ -28,12 +27,13 @@ pub struct LineBoil {
     /// Range 0 (off) to 3, default 0.
     #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
     pub amplitude: f32,
+    // Waves and drawings switch: in between, every frame would be another drawing.
     /// Length of the waves of a line in logical pixels. Range 20 to 120, default 60.
-    #[reflect(@FieldRange::linear(20.0, 120.0).unit("px"))]
+    #[reflect(@FieldRange::linear(20.0, 120.0).unit("px"), @BlendField::Switch)]
     pub wavelength: f32,
     /// Drawings per second. Films that are animated "on twos" have 12. Range 0 (one drawing
     /// for all time) to 60, default 12.
-    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"), @BlendField::Switch)]
     pub rate: f32,
 }
 
@@ -47,23 +47,6 @@ impl LineBoil {
         wavelength: 60.0,
         rate: 12.0,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
-
-    /// The settings between two, at `t` from 0 to 1. Waves and drawings change at once,
-    /// halfway: in between, every frame would be another drawing.
-    #[must_use]
-    pub fn mixed(self, other: Self, t: f32) -> Self {
-        let later = if t < 0.5 { self } else { other };
-        Self {
-            amplitude: self.amplitude.lerp(other.amplitude, t),
-            ..later
-        }
-    }
 
     /// Whether lines are displaced.
     pub(crate) fn moves(&self) -> bool {
@@ -87,6 +70,8 @@ impl LineBoil {
         }
     }
 }
+
+impl_sanitized!(LineBoil);
 
 impl Default for LineBoil {
     fn default() -> Self {

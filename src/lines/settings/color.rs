@@ -1,12 +1,9 @@
 //! Where the colour of lines comes from.
 
-use bevy::{
-    math::FloatExt,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault};
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, clamp_or_default};
+use crate::settings::{FieldRange, NotFinite, impl_sanitized};
 
 /// Where the colour of lines comes from. Objects whose `OutlineStyle` has a colour keep that.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,10 +19,10 @@ pub enum LineColor {
     /// multisampled views, a few pixels of slanted lines mix in what lies behind.
     Surface {
         /// Factor of the luminance. Range 0 (black) to 1, 0.35 if it is not finite.
-        #[reflect(@FieldRange::FRACTION)]
+        #[reflect(@FieldRange::FRACTION, @NotFinite(0.35))]
         darken: f32,
         /// Factor of the distance from grey. Range 0 (grey) to 2, 1.2 if it is not finite.
-        #[reflect(@FieldRange::linear(0.0, 2.0))]
+        #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.2))]
         saturate: f32,
     },
 }
@@ -36,38 +33,6 @@ impl LineColor {
         darken: 0.35,
         saturate: 1.2,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        match self {
-            Self::Ink => Self::Ink,
-            Self::Surface { darken, saturate } => Self::Surface {
-                darken: clamp_or_default(darken, 0.35, 0.0, 1.0),
-                saturate: clamp_or_default(saturate, 1.2, 0.0, 2.0),
-            },
-        }
-    }
-
-    /// The settings between two, at `t` from 0 to 1. Between ink and surface, it changes at
-    /// once, halfway.
-    #[must_use]
-    pub fn mixed(self, other: Self, t: f32) -> Self {
-        match (self, other) {
-            (
-                Self::Surface { darken, saturate },
-                Self::Surface {
-                    darken: other_darken,
-                    saturate: other_saturate,
-                },
-            ) => Self::Surface {
-                darken: darken.lerp(other_darken, t),
-                saturate: saturate.lerp(other_saturate, t),
-            },
-            _ if t < 0.5 => self,
-            _ => other,
-        }
-    }
 
     /// Whether lines have the colour of surfaces.
     pub(crate) fn is_surface(self) -> bool {
@@ -82,3 +47,5 @@ impl LineColor {
         }
     }
 }
+
+impl_sanitized!(LineColor);

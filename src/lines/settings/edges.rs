@@ -2,14 +2,14 @@
 
 use bevy::{
     color::Color,
-    math::{FloatExt, Vec3},
+    math::Vec3,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{
-    Blend, FieldRange, blend_color, clamp_fields, clamp_or_default, color_serde, linear_rgb,
+    Blend, BlendField, FieldRange, NotFinite, blend_fields, color_serde, impl_sanitized, linear_rgb,
 };
 
 /// How convex or concave creases are drawn: [`Creases::convex`] or [`Creases::concave`]. The
@@ -30,18 +30,19 @@ use crate::settings::{
 #[serde(default, deny_unknown_fields)]
 pub struct EdgeStyle {
     /// Colour of the lines. Default: [`EdgeColor::HIGHLIGHT`].
+    #[reflect(@BlendField::Fields)]
     pub color: EdgeColor,
     /// Width of the lines, as a multiple of the others'. Range 0 to 4, default 1.
-    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    #[reflect(@FieldRange::linear(0.0, 4.0), @NotFinite(1.0))]
     pub width: f32,
     /// Opacity of the lines, as a fraction of the other creases'. Range 0 (no lines) to 1, default 1.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub opacity: f32,
     /// The fraction of the opacity that is left where neither side of the edge faces the light, which is
     /// the [`KeyLight`](crate::KeyLight), else the brightest directional light, else one from
     /// above. Cast shadows do not count. Below 1, the normal prepass is added to the camera.
     /// Range 0 to 1, default 1.
-    #[reflect(@FieldRange::FRACTION)]
+    #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub unlit_opacity: f32,
 }
 
@@ -53,15 +54,6 @@ impl EdgeStyle {
         opacity: 1.0,
         unlit_opacity: 1.0,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            color: self.color.sanitized(),
-            ..clamp_fields(self)
-        }
-    }
 
     fn uniform(&self) -> EdgeUniform {
         let (color, source, lighten, saturate) = match self.color {
@@ -99,6 +91,8 @@ impl EdgeStyle {
     }
 }
 
+impl_sanitized!(EdgeStyle, EdgeColor);
+
 impl Default for EdgeStyle {
     fn default() -> Self {
         Self::HIGHLIGHT
@@ -111,17 +105,8 @@ impl Blend for EdgeStyle {
         Self { opacity, ..self }
     }
 
-    fn same_modes(&self, other: &Self) -> bool {
-        self.color.is_surface() == other.color.is_surface()
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            color: self.color.mixed(other.color, t),
-            width: self.width.lerp(other.width, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-            unlit_opacity: self.unlit_opacity.lerp(other.unlit_opacity, t),
-        }
+    fn mixed(&self, other: &Self, t: f32) -> Self {
+        blend_fields(self, other, t)
     }
 }
 
@@ -142,10 +127,10 @@ pub enum EdgeColor {
     Surface {
         /// How much lighter the line is than the surface, in Oklab: 1 is as light as white, with half
         /// of the chroma; -1 is black. Range -1 to 1, 0.35 if it is not finite.
-        #[reflect(@FieldRange::linear(-1.0, 1.0))]
+        #[reflect(@FieldRange::linear(-1.0, 1.0), @NotFinite(0.35))]
         lighten: f32,
         /// Factor of the chroma in Oklab. Range 0 (grey) to 2, 1 if it is not finite.
-        #[reflect(@FieldRange::linear(0.0, 2.0))]
+        #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.0))]
         saturate: f32,
     },
 }
@@ -156,41 +141,6 @@ impl EdgeColor {
         lighten: 0.35,
         saturate: 1.0,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        match self {
-            Self::Ink { color } => Self::Ink { color },
-            Self::Surface { lighten, saturate } => Self::Surface {
-                lighten: clamp_or_default(lighten, 0.35, -1.0, 1.0),
-                saturate: clamp_or_default(saturate, 1.0, 0.0, 2.0),
-            },
-        }
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        match (self, other) {
-            (Self::Ink { color: a }, Self::Ink { color: b }) => Self::Ink {
-                color: blend_color(a, b, t),
-            },
-            (
-                Self::Surface {
-                    lighten: a,
-                    saturate: c,
-                },
-                Self::Surface {
-                    lighten: b,
-                    saturate: d,
-                },
-            ) => Self::Surface {
-                lighten: a.lerp(b, t),
-                saturate: c.lerp(d, t),
-            },
-            (_, _) if t < 0.5 => self,
-            _ => other,
-        }
-    }
 
     /// Whether the colour depends on the surface below.
     pub(crate) fn is_surface(self) -> bool {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     depth::{ProjectionKind, frame::DepthProjection},
-    settings::{FieldRange, clamp_or_default},
+    settings::{FieldRange, NotFinite, clamp_or_default},
 };
 
 /// What happens to lines in fog.
@@ -31,7 +31,7 @@ pub enum LineFog {
     Visibility {
         /// Distance at which 2 % of a line is left, in world units (Koschmieder's visibility).
         /// Range 0.001 to 1e9; 1000 if it is not finite.
-        #[reflect(@FieldRange::logarithmic(1e-3, 1e9).unit("units"))]
+        #[reflect(@FieldRange::logarithmic(1e-3, 1e9).unit("units"), @NotFinite(1000.0))]
         distance: f32,
     },
 }

@@ -2,15 +2,12 @@
 
 use bevy::{
     color::Color,
-    math::FloatExt,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
 
 use super::edges::EdgeStyle;
-use crate::settings::{
-    Blend, Equations, FieldRange, blend_color, blend_ratio, clamp_fields, color_serde,
-};
+use crate::settings::{Blend, Equations, FieldRange, color_serde, impl_sanitized, mix_fields};
 
 /// Outlines where a surface ends in front of another one or of the sky.
 ///
@@ -66,12 +63,6 @@ impl Silhouettes {
         color: Color::BLACK,
         opacity: 1.0,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
 
     /// `k` of Eq. 2. The corrected equations halve the threshold, because a straight edge
     /// of height h has `g_max - g_min = h / 2`.
@@ -182,16 +173,6 @@ impl Creases {
         concave: None,
     };
 
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            convex: self.convex.map(EdgeStyle::sanitized),
-            concave: self.concave.map(EdgeStyle::sanitized),
-            ..clamp_fields(self)
-        }
-    }
-
     /// The styles of convex and concave edges, if they have any.
     pub(crate) fn edge_styles(&self) -> impl Iterator<Item = EdgeStyle> {
         let measured = self.equations == Equations::Corrected;
@@ -233,12 +214,6 @@ impl ObjectEdges {
         color: Color::BLACK,
         opacity: 1.0,
     };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
 }
 
 impl Default for ObjectEdges {
@@ -295,25 +270,12 @@ pub(crate) fn ramp(limit: f32, softness: f32, weakest: Option<f32>) -> [f32; 2] 
     [low.min(weakest.unwrap_or(low)), limit + half]
 }
 
+impl_sanitized!(Silhouettes, Creases, ObjectEdges);
+
 impl Blend for Silhouettes {
     fn faded(self, fraction: f32) -> Self {
         let opacity = self.opacity * fraction;
         Self { opacity, ..self }
-    }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        self.equations == other.equations
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            equations: self.equations,
-            threshold: blend_ratio(self.threshold, other.threshold, t),
-            edge_limit: self.edge_limit.lerp(other.edge_limit, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: blend_color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-        }
     }
 }
 
@@ -328,18 +290,12 @@ impl Blend for Creases {
         modes(self) == modes(other)
     }
 
-    fn mixed(self, other: Self, t: f32) -> Self {
+    fn mixed(&self, other: &Self, t: f32) -> Self {
+        let colors = [self.color, other.color];
         Self {
-            equations: self.equations,
-            source: self.source,
-            normal_maps: self.normal_maps,
-            angle: self.angle.lerp(other.angle, t),
-            edge_limit: self.edge_limit.lerp(other.edge_limit, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: blend_color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-            convex: EdgeStyle::between(self.convex, other.convex, [self.color, other.color], t),
-            concave: EdgeStyle::between(self.concave, other.concave, [self.color, other.color], t),
+            convex: EdgeStyle::between(self.convex, other.convex, colors, t),
+            concave: EdgeStyle::between(self.concave, other.concave, colors, t),
+            ..mix_fields(self, other, t)
         }
     }
 }
@@ -348,16 +304,5 @@ impl Blend for ObjectEdges {
     fn faded(self, fraction: f32) -> Self {
         let opacity = self.opacity * fraction;
         Self { opacity, ..self }
-    }
-
-    fn same_modes(&self, _: &Self) -> bool {
-        true
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            color: blend_color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-        }
     }
 }

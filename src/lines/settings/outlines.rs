@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     lines::modifiers::Sheet,
-    settings::{Equations, FieldRange},
+    settings::{BlendField, Equations, FieldRange},
 };
 
 /// Draws outlines: silhouettes, where one surface hides another; creases, where a
@@ -99,6 +99,7 @@ pub struct Outlines {
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub overshoot: f32,
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
+    #[reflect(@BlendField::Fields)]
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the distance:
     /// there they are thinner, and below 0.6 physical pixels fainter. Density is measured within
@@ -110,8 +111,10 @@ pub struct Outlines {
     pub ink_budget: f32,
     /// How lines move: as if each drawing of a film had been inked anew. Default:
     /// [`LineBoil::STILL`].
+    #[reflect(@BlendField::Fields)]
     pub boil: LineBoil,
     /// Where the colour of lines comes from. Default: [`LineColor::Ink`].
+    #[reflect(@BlendField::Fields)]
     pub color: LineColor,
     /// Weight of the previous frames under temporal anti-aliasing, whose jitter lines would
     /// otherwise follow. History is rejected where lines move fast, where something else comes into

@@ -1,7 +1,7 @@
 //! How wide lines are in different places: the settings, and what the shaders read of them.
 
 use bevy::{
-    math::{FloatExt, Vec2, Vec3},
+    math::{Vec2, Vec3},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     objects::LARGEST_FACTOR,
-    settings::{FieldRange, blend_ratio, clamp_fields},
+    settings::{FieldRange, impl_sanitized},
 };
 
 /// Varies the width of lines from place to place. Each setting is or determines a factor of the
@@ -104,31 +104,6 @@ impl LineWeight {
         pressure_length: 60.0,
     };
 
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        clamp_fields(self)
-    }
-
-    /// The settings between two, at `t` from 0 to 1.
-    #[must_use]
-    pub fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            outer: self.outer.lerp(other.outer, t),
-            inner: self.inner.lerp(other.inner, t),
-            crease: self.crease.lerp(other.crease, t),
-            object: self.object.lerp(other.object, t),
-            shade: self.shade.lerp(other.shade, t),
-            lit: self.lit.lerp(other.lit, t),
-            perspective: self.perspective.lerp(other.perspective, t),
-            nib_roundness: self.nib_roundness.lerp(other.nib_roundness, t),
-            nib_angle: self.nib_angle.lerp(other.nib_angle, t),
-            taper: self.taper.lerp(other.taper, t),
-            pressure: self.pressure.lerp(other.pressure, t),
-            pressure_length: blend_ratio(self.pressure_length, other.pressure_length, t),
-        }
-    }
-
     /// Whether widths depend on the normals of surfaces.
     pub(crate) fn reads_normals(&self) -> bool {
         self.shade > 0.0 || self.lit > 0.0
@@ -175,6 +150,8 @@ impl LineWeight {
         }
     }
 }
+
+impl_sanitized!(LineWeight);
 
 impl Default for LineWeight {
     fn default() -> Self {

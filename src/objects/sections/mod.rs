@@ -38,7 +38,7 @@ use super::{
 };
 use crate::{
     schedule::DivideMeshes,
-    settings::{FieldRange, clamp_or_default},
+    settings::{FieldRange, impl_sanitized},
 };
 
 pub(crate) use table::{
@@ -83,15 +83,9 @@ pub struct MeshSections {
 impl MeshSections {
     /// No sections, whatever the [`CreaseSource`](crate::lines::CreaseSource) of cameras is.
     pub const NONE: Self = Self { angle: 180.0 };
-
-    /// The settings that are used.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            angle: clamp_or_default(self.angle, 50.0, 10.0, 180.0),
-        }
-    }
 }
+
+impl_sanitized!(MeshSections);
 
 impl Default for MeshSections {
     fn default() -> Self {

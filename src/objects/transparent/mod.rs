@@ -35,7 +35,7 @@ use super::{
 use crate::{
     depth::surfaces::prepass_is_empty,
     schedule::{ComicsSystems, PrepareComics},
-    settings::{FieldRange, clamp_or_default},
+    settings::{FieldRange, impl_sanitized},
 };
 
 pub(super) use items::TransparentItems;
@@ -84,17 +84,7 @@ impl Default for DepthWrite {
     }
 }
 
-impl DepthWrite {
-    /// The settings that are used: [`alpha_cutoff`](Self::alpha_cutoff) in its documented
-    /// range.
-    #[must_use]
-    pub fn sanitized(self) -> Self {
-        Self {
-            alpha_cutoff: clamp_or_default(self.alpha_cutoff, 0.5, 0.01, 1.0),
-            ..self
-        }
-    }
-}
+impl_sanitized!(DepthWrite);
 
 /// The least alpha that is drawn, of the transparent meshes that draw into the depth of effects.
 pub(crate) type DepthWrites = Values<DepthWrite, f32>;

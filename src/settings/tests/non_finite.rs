@@ -6,11 +6,18 @@ use std::{
 };
 
 use bevy::reflect::{
-    PartialReflect, ReflectMut, ReflectRef,
-    enums::{DynamicEnum, DynamicVariant, Enum, VariantInfo},
+    PartialReflect, ReflectMut, ReflectRef, TypeInfo,
+    attributes::CustomAttributes,
+    enums::DynamicEnum,
+    list::{List, ListInfo},
+    structs::DynamicStruct,
 };
 
-use crate::settings::FieldRange;
+use super::places::{is_color, made_variant};
+use crate::settings::{
+    FieldRange,
+    parts::{attributes, part, part_mut},
+};
 
 /// How many inputs are tried: the variable `FUZZ_CASES`, else 5000.
 pub(crate) fn cases() -> usize {
@@ -48,7 +55,7 @@ impl Numbers {
     }
 
     /// Half of them are from -1 to 3; the others have any bits, or are the ends of all ranges.
-    fn float(&mut self) -> f32 {
+    pub(super) fn float(&mut self) -> f32 {
         const ENDS: [f32; 10] = [
             0.0,
             -0.0,
@@ -77,8 +84,8 @@ impl Numbers {
     }
 }
 
-/// Gives all numbers, flags and modes of a value odd ones. Lists keep their length, and enums with
-/// fields their variant.
+/// Gives all numbers, flags and modes of a value odd ones, options any or none, and lists of structs
+/// any length. Colours keep their space.
 pub(crate) fn scramble(value: &mut dyn PartialReflect, numbers: &mut Numbers) {
     if let Some(x) = value.try_downcast_mut::<f32>() {
         *x = numbers.float();
@@ -86,94 +93,73 @@ pub(crate) fn scramble(value: &mut dyn PartialReflect, numbers: &mut Numbers) {
         *n = numbers.count();
     } else if let Some(is_on) = value.try_downcast_mut::<bool>() {
         *is_on = numbers.below(2) == 0;
+    } else if let ReflectMut::List(items) = value.reflect_mut() {
+        scramble_items(items, numbers);
     } else {
-        scramble_fields(value, numbers);
+        if let Some(variant) = any_variant(value, numbers) {
+            value.apply(&variant);
+        }
+        for i in 0.. {
+            let Some(field) = part_mut(value, i) else {
+                return;
+            };
+            scramble(field, numbers);
+        }
     }
 }
 
-fn scramble_fields(value: &mut dyn PartialReflect, numbers: &mut Numbers) {
-    match value.reflect_mut() {
-        ReflectMut::Struct(value) => {
-            for k in 0..value.field_len() {
-                if let Some(field) = value.field_at_mut(k) {
-                    scramble(field, numbers);
-                }
-            }
+fn scramble_items(items: &mut dyn List, numbers: &mut Numbers) {
+    let info = items.get_represented_list_info();
+    if let Some(TypeInfo::Struct(_)) = info.and_then(ListInfo::item_info) {
+        while items.pop().is_some() {}
+        for _ in 0..numbers.below(20) {
+            items.push(Box::new(DynamicStruct::default()));
         }
-        ReflectMut::Enum(value) => {
-            if let Some(mode) = mode(&*value, numbers) {
-                value.apply(&mode);
-            }
-            for k in 0..value.field_len() {
-                if let Some(field) = value.field_at_mut(k) {
-                    scramble(field, numbers);
-                }
-            }
+    }
+    for i in 0..items.len() {
+        if let Some(item) = items.get_mut(i) {
+            scramble(item, numbers);
         }
-        ReflectMut::List(value) => {
-            for k in 0..value.len() {
-                if let Some(item) = value.get_mut(k) {
-                    scramble(item, numbers);
-                }
-            }
-        }
-        _ => {}
     }
 }
 
-/// Any mode of an enum whose variants have no fields.
-fn mode(value: &dyn Enum, numbers: &mut Numbers) -> Option<DynamicEnum> {
-    let info = value.get_represented_enum_info()?;
-    let mut variants = info.iter();
-    if !variants.all(|variant| matches!(variant, VariantInfo::Unit(_))) {
+fn any_variant(value: &dyn PartialReflect, numbers: &mut Numbers) -> Option<DynamicEnum> {
+    let info = value.get_represented_type_info()?.as_enum().ok()?;
+    if is_color(value) {
         return None;
     }
     let variant = info.variant_at(numbers.below(info.variant_len()))?;
-    Some(DynamicEnum::new(variant.name(), DynamicVariant::Unit))
+    made_variant(variant, None)
 }
 
 /// The first number that is not finite, or not in the range that its field documents, and where it
-/// is. `range`: of the field that has the value.
-pub(crate) fn wrong(value: &dyn PartialReflect, range: Option<FieldRange>) -> Option<String> {
-    if let Some(x) = value.try_downcast_ref::<f32>() {
-        return is_wrong(f64::from(*x), range).then(|| x.to_string());
+/// is. `outer`: attributes of the field that has the value.
+pub(crate) fn wrong(
+    value: &dyn PartialReflect,
+    outer: Option<&CustomAttributes>,
+) -> Option<String> {
+    let number = value.try_downcast_ref::<f32>().map(|x| f64::from(*x));
+    let count = || value.try_downcast_ref::<u32>().map(|n| f64::from(*n));
+    if let Some(x) = number.or_else(count) {
+        let range = outer.and_then(|attributes| attributes.get());
+        return is_wrong(x, range).then(|| x.to_string());
     }
-    if let Some(n) = value.try_downcast_ref::<u32>() {
-        return is_wrong(f64::from(*n), range).then(|| n.to_string());
-    }
-    match value.reflect_ref() {
-        ReflectRef::Struct(value) => {
-            let info = value.get_represented_struct_info();
-            (0..value.field_len()).find_map(|k| {
-                let own = info.and_then(|info| FieldRange::of(info.field_at(k)?));
-                // Components of a vector have the range of the vector.
-                let found = wrong(value.field_at(k)?, own.or(range))?;
-                Some(format!("{}: {found}", value.name_at(k).unwrap_or_default()))
-            })
-        }
-        ReflectRef::Enum(value) => (0..value.field_len()).find_map(|k| {
-            let found = wrong(value.field_at(k)?, range_of(value, k).or(range))?;
-            Some(format!("{}: {found}", value.variant_name()))
-        }),
+    if let ReflectRef::List(items) = value.reflect_ref() {
         // The range of a list is that of its length.
-        ReflectRef::List(value) => (0..value.len()).find_map(|k| wrong(value.get(k)?, None)),
-        _ => None,
+        return (0..items.len()).find_map(|i| wrong(items.get(i)?, None));
     }
+    let mut fields = (0..).map_while(|i| Some((i, part(value, i)?)));
+    fields.find_map(|(i, field)| {
+        // Components of a vector have the range of the vector.
+        let own = attributes(value, i, outer).filter(|own| !own.is_empty());
+        let found = wrong(field, own.or(outer))?;
+        Some(format!("{i}: {found}"))
+    })
 }
 
-/// The range of a field of the variant that an enum has.
-fn range_of(value: &dyn Enum, k: usize) -> Option<FieldRange> {
-    let info = value.get_represented_enum_info()?;
-    match info.variant(value.variant_name())? {
-        VariantInfo::Struct(variant) => FieldRange::of(variant.field_at(k)?),
-        VariantInfo::Tuple(variant) => variant.field_at(k)?.get_attribute().copied(),
-        VariantInfo::Unit(_) => None,
-    }
-}
-
-fn is_wrong(x: f64, range: Option<FieldRange>) -> bool {
+fn is_wrong(x: f64, range: Option<&FieldRange>) -> bool {
     // Ends have the precision of 32 bits.
     let slack = |end: f64| 1e-6 * end.abs();
-    let is_outside = |r: FieldRange| x < r.min - slack(r.min) || x > r.max + slack(r.max);
+    let is_outside = |r: &FieldRange| x < r.min - slack(r.min) || x > r.max + slack(r.max);
     !x.is_finite() || range.is_some_and(is_outside)
 }

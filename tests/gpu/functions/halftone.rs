@@ -28,9 +28,20 @@ fn coverages_of_all_shapes_match_the_reference() {
         0u32..4,
         (0.0f32..3.0, -1.0f32..=1.0),
     )
-        .prop_map(|((x, y), tone, cell_size, degrees, plate, (ink_bleed, height))| {
-            [x, y, tone, cell_size, degrees, plate as f32, ink_bleed, height]
-        });
+        .prop_map(
+            |((x, y), tone, cell_size, degrees, plate, (ink_bleed, height))| {
+                [
+                    x,
+                    y,
+                    tone,
+                    cell_size,
+                    degrees,
+                    plate as f32,
+                    ink_bleed,
+                    height,
+                ]
+            },
+        );
     for shape in SHAPES {
         let number = shape as u32;
         for_batches(row.clone(), |rows| {
