@@ -106,7 +106,9 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
     for path in &sources {
         let own = room(path);
         // The root and the plugin put everything together.
-        if ["lib", "plugin"].contains(&own.as_str()) || path.ends_with("tests.rs") {
+        let is_test =
+            path.ends_with("tests.rs") || path.parent().is_some_and(|p| p.ends_with("tests"));
+        if is_test || ["lib", "plugin"].contains(&own.as_str()) {
             continue;
         }
         for head in heads(&code(path)) {

@@ -115,7 +115,8 @@ impl Step {
     /// it in the same columns.
     fn frame(&mut self, step: f32, x: f32) -> f32 {
         let rows = self.draw(self.front, x - 30.0, height(step));
-        let inked = |row: &Vec<f32>| row.iter().map(|ink| *ink > 0.1).collect::<Vec<bool>>();
+        // A weak edge has an eighth of the ink of a strong one.
+        let inked = |row: &Vec<f32>| row.iter().map(|ink| *ink > 0.05).collect::<Vec<bool>>();
         let columns: HashSet<Vec<bool>> = rows.iter().map(inked).collect();
         assert_eq!(columns.len(), 1, "{columns:?}");
         rows[32].iter().sum()

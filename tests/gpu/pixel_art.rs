@@ -193,9 +193,9 @@ fn creases_run_on_one_side() {
 }
 
 /// A plate 0.25 pixels before a wall, as one mesh: its sides are not seen. Truth: all of its
-/// outline is on the plate.
+/// outline is on the wall, beside the plate.
 #[test]
-fn lines_along_steps_run_in_front() {
+fn lines_along_steps_run_behind() {
     let mut small = towards_the_sky(SIZE);
     let mut mesh: Mesh = Cuboid::new(200.0, 200.0, 5.0).into();
     let plate: Mesh = Cuboid::new(40.0, 30.0, 5.0).into();
@@ -204,11 +204,13 @@ fn lines_along_steps_run_in_front() {
     let at = Transform::from_xyz(1.3, 0.6, -100.0).with_rotation(Quat::from_rotation_z(0.3));
     small.put(mesh, unlit(Color::WHITE), at);
     let inked = creases(&mut small);
-    assert!((110..150).contains(&inked.len()), "{}", inked.len());
+    assert!((115..155).contains(&inked.len()), "{}", inked.len());
     for (x, y) in inked {
         let place = Vec2::new(x as f32 - 79.5, 44.5 - y as f32);
         let on_plate = at.rotation.inverse() * (place - at.translation.truncate()).extend(0.0);
         let [across, up] = on_plate.truncate().abs().to_array();
-        assert!(across < 20.0 && up < 15.0, "{x}, {y}: {on_plate}");
+        let is_outside = across > 20.0 || up > 15.0;
+        let is_beside = across < 21.5 && up < 16.5;
+        assert!(is_outside && is_beside, "{x}, {y}: {on_plate}");
     }
 }

@@ -70,10 +70,11 @@ const PARALLEL: f32 = 0.0027;
 fn preferred(at: Borders, reference: vec4<f32>) -> vec4<bool> {
 #ifdef HARD
     // One side all along: the object of the larger id; or the surface that faces a direction more; of
-    // parallel ones that in front; and in one plane the larger section.
+    // parallel ones that behind, so that a small feature in front keeps its pixels; and in one plane the
+    // larger section.
     let object = at.object_here > at.object_there;
     let has_step = abs(at.in_front) > STEP * reference;
-    let parallel = select(at.marks_here > at.marks_there, at.in_front > vec4(0.0), has_step);
+    let parallel = select(at.marks_here > at.marks_there, at.in_front < vec4(0.0), has_step);
     let surface = select(at.faces_more > vec4(0.0), parallel, at.folds < vec4(PARALLEL));
     return select(surface, object, at.object_here != at.object_there);
 #else

@@ -84,7 +84,11 @@ fn assert_between(
             a + (b - a) * t
         };
         // Mixtures of colours are clamped to what a display shows.
-        let tolerance = if is_mixture { 0.02 } else { 1e-5 * (a.abs() + b.abs()) };
+        let tolerance = if is_mixture {
+            0.02
+        } else {
+            1e-5 * (a.abs() + b.abs())
+        };
         assert!((found - want).abs() <= tolerance, "{text}");
     }
 }
@@ -156,7 +160,10 @@ fn lines_are_blended_kind_by_kind() {
     for (t, amplitude, end) in [(0.25, 1.5, a), (0.75, 2.5, b)] {
         let found = between(&a, &b, t);
         let silhouettes = found.silhouettes.expect("silhouettes");
-        assert_eq!((silhouettes.opacity, found.boil.amplitude), (0.5, amplitude));
+        assert_eq!(
+            (silhouettes.opacity, found.boil.amplitude),
+            (0.5, amplitude)
+        );
         let modes = |o: &Outlines| (o.color, o.boil.wavelength, o.min_length);
         assert_eq!(modes(&found), modes(&end), "{t}");
         let equations = end.silhouettes.map(|s| s.equations);

@@ -183,7 +183,7 @@ fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
     let in_front = 3.0 * (depths[2] - depths[3]) - depths[1] + depths[4];
     let has_step = in_front.abs() > 2e-5 * view.jump_reference(depths[2].max(depths[3]));
     if has_step {
-        in_front > 0.0
+        in_front < 0.0
     } else {
         here[1] > there[1]
     }
