@@ -120,7 +120,10 @@ impl DepthMap {
     /// that changes nothing replaced by `None`.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let map = clamp_fields(self);
+        let map = clamp_fields(Self {
+            sky_beyond: self.sky_beyond.filter(|distance| distance.is_finite()),
+            ..self
+        });
         Self {
             mapping: map.mapping.ordered(),
             smoothing: (map.smoothing).filter(|smoothing| !smoothing.is_negligible()),

@@ -225,16 +225,10 @@ impl DrawnMeshes<'_> {
     }
 }
 
-/// Warns of a material that may move vertices in the main pass alone.
-pub(super) fn warn_of_vertices(entity: MainEntity, properties: &MaterialProperties) {
-    let moves = properties.get_shader(MaterialVertexShader).is_some();
-    if moves && properties.get_shader(PrepassVertexShader).is_none() {
-        warn_once!(
-            "the material of {entity:?} has a vertex shader, but none for the prepass: if it moves \
-             vertices, pixels are lost; implement `prepass_vertex_shader`, or return false from \
-             `enable_prepass`"
-        );
-    }
+/// Whether a material may move vertices in the main pass alone.
+pub(super) fn may_move_vertices(properties: &MaterialProperties) -> bool {
+    properties.get_shader(MaterialVertexShader).is_some()
+        && properties.get_shader(PrepassVertexShader).is_none()
 }
 
 /// Finds the bins of objects.
@@ -281,7 +275,13 @@ impl IdItems<'_> {
         if !in_prepass(drawn.properties) || self.is_backdrop(entity) {
             return Err(Missing::NotDrawn);
         }
-        warn_of_vertices(entity, drawn.properties);
+        if may_move_vertices(drawn.properties) {
+            warn_once!(
+                "the material of {entity:?} has a vertex shader, but none for the prepass: if it moves \
+                 vertices, pixels are lost; implement `prepass_vertex_shader`, or return false from \
+                 `enable_prepass`"
+            );
+        }
         let uses_material = reads_material(drawn.properties);
         let key = drawn.material_key(drawn.mesh_key(view_key, uses_material));
         let (cache, layout) = (&self.cache, &drawn.mesh.layout);

@@ -21,7 +21,7 @@ use bevy::{
     },
     math::Vec3,
     mesh::Mesh3d,
-    platform::collections::HashMap,
+    platform::collections::{HashMap, HashSet},
     render::sync_world::MainEntityHashSet,
     transform::components::{GlobalTransform, Transform},
 };
@@ -65,11 +65,6 @@ impl Margins {
         let part = |[from, to]: [f32; 2]| (distance - from) / (to - from);
         let [start, end] = self.to_nothing;
         (start && 1.0 - part(self.start) >= MOSTLY) || (end && part(self.end) >= MOSTLY)
-    }
-
-    /// Whether this level is followed by another one.
-    fn fades_into(&self, next: &Self) -> bool {
-        self.end == next.start && self.end[0] < self.end[1]
     }
 }
 
@@ -185,6 +180,8 @@ fn find_levels(
             }
         };
     }
+    touched.sort_unstable();
+    touched.dedup();
     for place in touched {
         let Some(meshes) = by_place.levels.get(&place) else {
             continue;
@@ -231,15 +228,19 @@ impl Levels {
         sorted.sort_by(|(a, first), (b, second)| {
             a.start[0].total_cmp(&b.start[0]).then(first.cmp(second))
         });
-        for (i, (margins, mesh)) in sorted.iter().enumerate() {
-            let before = sorted[..i]
-                .iter()
-                .find(|(before, _)| before.fades_into(margins));
-            let first = before.map(|(_, before)| self.object(*before));
-            self.first.set(*mesh, first);
-            let follows = sorted.iter().any(|(other, _)| other.fades_into(margins));
-            let is_followed = sorted.iter().any(|(other, _)| margins.fades_into(other));
+        let bits = |margin: [f32; 2]| margin.map(f32::to_bits);
+        let starts: HashSet<_> = sorted.iter().map(|(m, _)| bits(m.start)).collect();
+        // The first level that ends in a margin.
+        let mut ends = HashMap::new();
+        for (margins, mesh) in &sorted {
             let fades = |[from, to]: [f32; 2]| from < to;
+            let before = ends.get(&bits(margins.start)).copied();
+            let before = before.filter(|_| fades(margins.start));
+            let first = before.map(|before| self.object(before));
+            self.first.set(*mesh, first);
+            ends.entry(bits(margins.end)).or_insert(*mesh);
+            let follows = before.is_some();
+            let is_followed = starts.contains(&bits(margins.end));
             if let Some(known) = self.margins.get_mut(mesh) {
                 known.to_nothing = [
                     fades(margins.start) && !follows,

@@ -72,8 +72,8 @@ impl Default for SelectionOutline {
 /// Outlines the hidden parts of this object over what hides them: for a character behind a
 /// wall.
 ///
-/// Its silhouettes are drawn only where other objects hide it. In all other respects it behaves
-/// like a [`SelectionOutline`].
+/// All of its silhouettes are drawn, also those inside of it, where other objects hide it. If the
+/// object has a [`SelectionOutline`] too, only that is drawn.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct XRayOutline {

@@ -261,6 +261,10 @@ impl ObjectStyles {
             };
             self.faded.set(object, slot);
         }
+        for (object, style) in std::mem::take(&mut self.users.waiting) {
+            let slot = self.enter(object, None, style);
+            self.slots.set(object, Some(slot));
+        }
     }
 }
 

@@ -128,6 +128,15 @@ impl ComicStyle {
         }
     }
 
+    /// Makes this style the camera's own, as a complete one, with no style over it.
+    pub fn set_as_own(&self, camera: &mut EntityCommands) {
+        let style = self.clone();
+        camera.queue(move |mut camera: EntityWorldMut| {
+            camera.remove::<StyleLayer>();
+            style.write(&mut camera);
+        });
+    }
+
     /// Makes a camera look like this complete style, which was made by editing
     /// what it looked like before. Over a camera's own style it takes the place of
     /// the applied style, so that the camera has its own style again when that is

@@ -152,6 +152,17 @@ fn what_the_game_changes_under_a_style_is_its_own() {
 }
 
 #[test]
+fn a_style_can_become_the_cameras_own() {
+    let (mut app, camera) = app();
+    apply(&mut app, camera, &ComicStyle::new().with(contours(3.0)));
+    let own = ComicStyle::new().with(Vignette::default());
+    own.set_as_own(&mut app.world_mut().commands().entity(camera));
+    app.world_mut().flush();
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera), own);
+}
+
+#[test]
 fn an_edit_of_an_applied_style_leaves_the_own_look_alone() {
     let (mut app, camera) = app();
     let own = look(&app, camera);

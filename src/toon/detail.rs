@@ -50,8 +50,8 @@ pub enum DetailAxis {
         /// What is in focus. Range 1e-4 to 1e6, default 5.
         #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"), @NotFinite(5.0))]
         distance: f32,
-        /// Half width of the range of full detail, as a fraction of `distance`. Range 0 to 10,
-        /// default 0.15.
+        /// Full detail reaches from `distance / (1 + clear)` to `distance * (1 + clear)`. Range 0 to
+        /// 10, default 0.15.
         #[reflect(@FieldRange::linear(0.0, 10.0), @NotFinite(0.15))]
         clear: f32,
         /// Ratio of distances over which detail falls to none, counted from the end of that range.

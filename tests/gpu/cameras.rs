@@ -7,7 +7,7 @@ use bevy::{
     },
     math::Vec4,
     post_process::effect_stack::LensDistortion,
-    render::render_resource::AsBindGroup,
+    render::{render_resource::AsBindGroup, view::ColorGrading},
 };
 use bevy_comics::cameras::{BeyondPrepass, ComicOverlay, RangeOf, StyleMask, overlay_camera};
 
@@ -361,10 +361,15 @@ fn an_overlay_is_drawn_over_the_comic() {
     small.insert(ahead);
     let middle = small.settle().picture().get_pixel(96, 64).0;
     assert!((0..3).all(|c| middle[c].abs_diff([r, g, b][c]) <= 1));
-    small.insert(Exposure { ev100: 3.0 }).settle();
+    let mut grading = ColorGrading::default();
+    grading.global.hue = 0.5;
+    small.insert((Exposure { ev100: 3.0 }, grading)).settle();
     let world = small.world();
-    let mut exposures = world.query::<&Exposure>();
-    assert!(exposures.iter(world).all(|own| own.ev100 == 3.0));
+    let mut light = world.query::<(&Exposure, &ColorGrading)>();
+    let copied = |(exposure, grading): (&Exposure, &ColorGrading)| {
+        exposure.ev100 == 3.0 && grading.global.hue == 0.5
+    };
+    assert!(light.iter(world).all(copied));
     small.camera_mut().remove::<ComicOverlay>();
     small.settle();
     let world = small.world();

@@ -18,8 +18,8 @@ use crate::{
 /// over the picture. Around the point, an ellipse with the viewport's aspect ratio stays
 /// clear.
 ///
-/// Each line tapers like a pen stroke: it has its full width at the border of the picture and a
-/// point at its inner end. Places, lengths and widths are random and change with every drawing. The
+/// Each line tapers like a pen stroke: it widens from a point at its inner end towards the farthest
+/// corner of the picture. Places, lengths and widths are random and change with every drawing. The
 /// point is a place of the viewport, or follows the camera's
 /// [`EffectTarget`](crate::effect::EffectTarget). Reads no texture.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -67,7 +67,7 @@ pub struct Outlines {
     /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
     pub hysteresis_ratio: f32,
-    /// Removes lines that are shorter than this many pixels at scale factor 1, which are noise.
+    /// Removes lines along fewer borders of pixels than this, at scale factor 1, which are noise.
     /// Closed lines, and pieces that meet other lines, stay, however short they are. Range 1
     /// (leaves out nothing) to 8, default 7.
     #[reflect(@FieldRange::linear(1.0, 8.0))]

@@ -25,7 +25,7 @@ use bevy::{
 
 use crate::objects::{
     DepthWrites, ID_FORMAT, QueuedDepth,
-    items::{DrawnMeshes, Missing, warn_of_vertices},
+    items::{DrawnMeshes, Missing, may_move_vertices},
     phase::{Bin, Layer},
     pipeline::{IdParts, ObjectIdPipeline, in_prepass, reads_material},
 };
@@ -137,7 +137,13 @@ impl TransparentItems<'_> {
         }
         let cutoff = self.own.has_cutoff(entity, properties);
         let cutoff = cutoff.ok_or(Missing::NotDrawn)?;
-        warn_of_vertices(entity, properties);
+        if may_move_vertices(properties) {
+            warn_once!(
+                "the material of {entity:?} has `DepthWrite` and a vertex shader, but none for the \
+                 prepass: if it moves vertices, lines are where the mesh would be without that; \
+                 implement `prepass_vertex_shader`"
+            );
+        }
         self.bin_of(entity, view_key, targets, cutoff)
     }
 

@@ -121,6 +121,45 @@ fn every_field_is_documented_and_every_number_has_a_range() {
     }
 }
 
+/// The numbers of the sentence "Range a to b", without remarks in parentheses.
+fn documented_range(docs: &str) -> Option<[f64; 2]> {
+    let words = docs.split_whitespace().skip_while(|word| *word != "Range");
+    let mut depth = 0;
+    let mut numbers = words.skip(1).filter(|word| {
+        let inside = depth > 0 || word.starts_with('(');
+        depth += word.matches('(').count();
+        depth -= word.matches(')').count().min(depth);
+        !inside
+    });
+    let number = |word: &str| word.trim_end_matches([',', '.', ';', '°']).parse().ok();
+    let least = number(numbers.next()?)?;
+    (numbers.next()? == "to").then_some(())?;
+    Some([least, number(numbers.next()?)?])
+}
+
+/// The range that clamps a number is the one that its documentation names.
+#[test]
+fn ranges_are_those_of_the_documentation() {
+    let mut checked = 0;
+    for (name, info) in all_types() {
+        for field in fields(info) {
+            let range = FieldRange::of(field);
+            let documented = field.docs().and_then(documented_range);
+            let (Some(range), Some(documented)) = (range, documented) else {
+                continue;
+            };
+            let is_right = [range.min, range.max]
+                .iter()
+                .zip(documented)
+                .all(|(found, said)| (found - said).abs() <= 1e-6 * said.abs());
+            let field = field.name();
+            assert!(is_right, "{name}.{field}: {documented:?}, {range:?}");
+            checked += 1;
+        }
+    }
+    assert!(checked > 100, "{checked}");
+}
+
 #[test]
 fn every_tooltip_begins_with_plain_words_and_has_no_markup() {
     let mut docs: Vec<(String, &'static str)> = Vec::new();
