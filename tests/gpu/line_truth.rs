@@ -108,9 +108,9 @@ fn a_faint_edge_cuts_nothing_out_of_a_wide_line() {
 /// width. The mean of four positions between the pixels. Lines of up to two pixels are as wide as
 /// asked within 0.02 pixels. Wider ones are drawn from the best two cracks of each column: in
 /// double precision, along 64 slopes at 16 offsets, this makes them up to 0.04 pixels thinner or
-/// wider (docs/benchmarks.md); 0.01 more is left for rounding to eight bits. Along cracks, lines at
-/// 0 and 45 degrees are as wide as asked within a hundredth; between these angles, a line follows a
-/// staircase and is wider.
+/// wider (docs/internals/measurements.md); 0.01 more is left for rounding to eight bits. Along
+/// cracks, lines at 0 and 45 degrees are as wide as asked within a hundredth; between these angles,
+/// a line follows a staircase and is wider.
 #[test]
 fn a_line_is_as_wide_as_asked_in_every_direction() {
     assert_as_wide_as_asked(&[1.0, 5.0]);

@@ -151,7 +151,8 @@ fn focus_aux_scalar(s: Focus, p: Pixel) -> f32 {
 }
 
 // Number of places in a disc of a radius: their error grows little with the radius, see
-// docs/benchmarks.md. It needs not grow with the area, because the spiral fills the disc evenly.
+// docs/internals/measurements.md. It needs not grow with the area, because the spiral fills the
+// disc evenly.
 fn place_count(radius: f32) -> i32 {
     return 12 + i32(radius);
 }

@@ -249,8 +249,8 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\ndocs/benchmarks.md has what was tried for those that are missed, under \"Effects of the \
-         page\".\n\n",
+        "\ndocs/internals/measurements.md has what was tried for those that are missed, under \
+         \"Effects of the page\".\n\n",
     );
     Ok(())
 }

@@ -190,9 +190,10 @@ pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
          count: see \"wrong pixels\" below.\n\
          * Fragments and dashes are left where a fold is about as sharp as the threshold, and \
          where a wire is narrower than a pixel.\n\
-         * Straight lines: docs/benchmarks.md says under that name what differs, and how much.\n\n\
-         docs/benchmarks.md has what was tried and what it gained, under \"Targets of the line \
-         engine\".\n\n### Met\n"
+         * Straight lines: docs/internals/measurements.md says under that name what differs, and \
+         how much.\n\n\
+         docs/internals/measurements.md has what was tried and what it gained, under \"Targets of \
+         the line engine\".\n\n### Met\n"
     );
     out.push_str(HEAD);
     for target in &met {
