@@ -117,6 +117,17 @@ fn fixed(from: f32, to: f32) -> DepthMap {
 }
 
 #[test]
+fn a_sky_at_no_distance_is_nowhere() {
+    for (distance, used) in [(NAN, None), (f32::INFINITY, None), (-1.0, Some(0.001))] {
+        let map = DepthMap {
+            sky_beyond: Some(distance),
+            ..DepthMap::default()
+        };
+        assert_eq!(map.sanitized().sky_beyond, used, "{distance}");
+    }
+}
+
+#[test]
 fn near_and_far_are_in_order_and_apart() {
     assert_eq!(fixed(NAN, NAN).sanitized(), fixed(0.1, 1000.0));
     assert_eq!(fixed(8.0, 2.0).sanitized(), fixed(2.0, 8.0));

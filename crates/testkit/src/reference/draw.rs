@@ -107,7 +107,7 @@ impl Cracks {
     }
 
     /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends are
-    /// extended; `linked`: the cracks of all lines, min_length included; `all`: those that were found.
+    /// extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),
@@ -160,7 +160,7 @@ impl Cracks {
 
     /// Closes gaps, leaves out the cracks that are not parts of lines, and bends the lines of the
     /// others. `all`: those that were found, and `sources` without ledges.
-    /// Returns the cracks of all lines, min_length included.
+    /// Returns the cracks of all lines, specks included.
     fn complete(
         &mut self,
         (all, sources): (&HashMap<Place, Crack>, &HashMap<Place, Crack>),
