@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use bevy::{
-    app::{App, PostUpdate},
+    app::App,
     camera::visibility::{ViewVisibility, VisibilityRange},
     ecs::{
         component::Component,
@@ -16,7 +16,6 @@ use bevy::{
         lifecycle::RemovedComponents,
         query::{Added, Changed, Or, With},
         resource::Resource,
-        schedule::IntoScheduleConfigs,
         system::{Query, ResMut},
     },
     math::Vec3,
@@ -26,9 +25,7 @@ use bevy::{
     transform::components::{GlobalTransform, Transform},
 };
 
-use super::{
-    changes::Follow, components::assign_object_styles, shared::Shared, table::ObjectStyles,
-};
+use super::{changes::Follow, shared::Shared, table::ObjectStyles};
 
 /// The margins of a range, at whose distances a mesh fades.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +125,7 @@ pub(crate) struct FadingMeshes {
 
 /// The levels at each place, by which those of one thing are found.
 #[derive(Resource, Default)]
-struct LevelsByPlace {
+pub(super) struct LevelsByPlace {
     places: EntityHashMap<Place>,
     levels: HashMap<Place, Vec<Entity>>,
 }
@@ -140,7 +137,7 @@ type Changes = Or<(
     Added<Mesh3d>,
 )>;
 
-fn find_levels(
+pub(super) fn find_levels(
     changed: Query<
         (Entity, &VisibilityRange, Option<&ChildOf>, &Transform),
         (With<Mesh3d>, Changes),
@@ -259,8 +256,7 @@ impl Follow for Levels {
 
 pub(super) fn build(app: &mut App) {
     app.init_resource::<Levels>()
-        .init_resource::<LevelsByPlace>()
-        .add_systems(PostUpdate, find_levels.before(assign_object_styles));
+        .init_resource::<LevelsByPlace>();
 }
 
 #[cfg(test)]

@@ -253,6 +253,7 @@ impl Plugin for ObjectsPlugin {
                 .add_systems(
                     bevy::app::PostUpdate,
                     (
+                        levels::find_levels,
                         components::assign_object_styles,
                         line_widths::find_wide_meshes,
                         simplification::assign_dials,

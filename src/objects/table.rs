@@ -261,7 +261,10 @@ impl ObjectStyles {
             };
             self.faded.set(object, slot);
         }
-        for (object, style) in std::mem::take(&mut self.users.waiting) {
+        let waiting = std::mem::take(&mut self.users.waiting).into_iter();
+        let mut waiting: Vec<_> = waiting.collect();
+        waiting.sort_unstable_by_key(|(object, _)| *object);
+        for (object, style) in waiting {
             let slot = self.enter(object, None, style);
             self.slots.set(object, Some(slot));
         }
