@@ -148,7 +148,7 @@ fn position_of(target: &EffectTarget, places: &Query<&GlobalTransform>) -> Optio
 fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writes: bool) {
     let wanted = IdsWanted {
         ids: plan.draws_ids(),
-        layer: plan.marks,
+        layer: plan.highlights,
         widths: plan.draws_widths(),
     };
     if wanted.ids || wanted.layer {

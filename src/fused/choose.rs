@@ -29,7 +29,7 @@ use super::{
 use crate::{
     depth::{passes::RangePasses, prepare::ViewDepthRange, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    lines::{LinePasses, LineRequest, ViewMarks},
+    lines::{LinePasses, LineRequest, ViewHighlights},
     objects::{DepthWanted, IdRequest, IdsWanted},
 };
 
@@ -59,21 +59,21 @@ pub(crate) fn choose_plans(
         SceneTextures<'_>,
         (Option<&ViewTarget>, Option<&ReadyPlan>),
         (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
-        Option<&ViewMarks>,
+        Option<&ViewHighlights>,
     )>,
-    stale: Query<(Entity, Option<&ViewMarks>), (With<ReadyPlan>, NotDrawn)>,
+    stale: Query<(Entity, Option<&ViewHighlights>), (With<ReadyPlan>, NotDrawn)>,
     // Those of the last frame.
     ranges: Query<&ViewDepthRange>,
     (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
     mut services: Services,
     mut cache: ResMut<PipelineCache>,
 ) {
-    for (entity, marks) in &stale {
-        remove(entity, marks, &mut commands);
+    for (entity, highlights) in &stale {
+        remove(entity, highlights, &mut commands);
     }
-    for (entity, view, camera, extracted, prepass, (target, ready), raster, marks) in &views {
+    for (entity, view, camera, extracted, prepass, (target, ready), raster, highlights) in &views {
         if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
-            remove(entity, marks, &mut commands);
+            remove(entity, highlights, &mut commands);
             continue;
         }
         let has_range = |leader: &Entity| ranges.iter().any(|r| r.request.camera == *leader);
@@ -112,17 +112,25 @@ pub(crate) fn choose_plans(
                     .insert(ReadyPlan(Some(wanted.clone())));
             }
         }
-        requests.put(entity, marks.map(|marks| marks.layer), &mut commands);
+        requests.put(
+            entity,
+            highlights.map(|highlights| highlights.layer),
+            &mut commands,
+        );
     }
 }
 
 /// Removes what a choice has put on a view.
-fn remove(view: Entity, marks: Option<&ViewMarks>, commands: &mut Commands) {
+fn remove(view: Entity, highlights: Option<&ViewHighlights>, commands: &mut Commands) {
     commands.entity(view).remove::<Chosen>();
     #[cfg(feature = "objects")]
-    super::marks::remove_marks(view, marks.map(|marks| marks.layer), commands);
+    super::highlights::remove_highlights(
+        view,
+        highlights.map(|highlights| highlights.layer),
+        commands,
+    );
     #[cfg(not(feature = "objects"))]
-    let _ = marks;
+    let _ = highlights;
 }
 
 /// Reports for every stage why it does not run. Stages that run overwrite this

@@ -128,7 +128,7 @@ pub(super) fn plain_request(
         visible_range: false,
         ids: false,
         sections: false,
-        marks: false,
+        highlights: false,
         object_styles: false,
         widths: false,
         line_reach: 0.0,

@@ -74,7 +74,7 @@ impl Plan {
                 plan.vertex_widths = false;
                 plan.unstyled = false;
                 plan.anchored = false;
-                plan.marks = false;
+                plan.highlights = false;
                 plan.own_pixels = plan.own_pixels.map(|_| OwnPixels::Depth);
             }
         }

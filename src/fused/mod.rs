@@ -10,12 +10,12 @@ mod device;
 mod drawn_area;
 mod earlier_passes;
 mod errors;
+#[cfg(feature = "objects")]
+mod highlights;
 mod inputs;
 mod intermediate;
 mod key;
 mod lines;
-#[cfg(feature = "objects")]
-mod marks;
 mod missing;
 mod object_depths;
 mod pass;

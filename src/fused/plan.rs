@@ -57,7 +57,7 @@ pub(crate) struct Plan {
     /// Screens follow some object.
     pub anchored: bool,
     /// Some object is outlined by itself.
-    pub marks: bool,
+    pub highlights: bool,
     /// Some mesh fades at some distance.
     pub fades: bool,
     /// Lines fade into the camera's distance fog.
@@ -104,7 +104,7 @@ impl Plan {
             vertex_widths: objects.widths,
             unstyled: objects.unstyled,
             anchored: objects.anchored,
-            marks: objects.marks,
+            highlights: objects.highlights,
             fades: objects.fades,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
@@ -121,7 +121,7 @@ impl Plan {
             ..Self::default()
         };
         let asked = plan.collect(camera, shown, types);
-        if !(asked || plan.marks || plan.readback || plan.histogram || plan.view.is_some()) {
+        if !(asked || plan.highlights || plan.readback || plan.histogram || plan.view.is_some()) {
             return None;
         }
         plan.show(types);
@@ -412,7 +412,7 @@ impl Plan {
         let read = read | Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
-            || self.marks
+            || self.highlights
             || self.histogram
             || self.materials
             || self.lends

@@ -34,7 +34,7 @@ use super::{
 };
 use crate::{
     effect::{EffectRegistry, EffectTarget, EffectType, load_shaders},
-    lines::draw_marks,
+    lines::draw_highlights,
     schedule::{ComicsSystems, PrepareComics},
 };
 
@@ -110,13 +110,13 @@ impl FusedPlugin {
             .add_systems(
                 Core3d,
                 (
-                    (stylize::<false>, draw_marks::<false>)
+                    (stylize::<false>, draw_highlights::<false>)
                         .chain()
                         .in_set(ComicsSystems::Stylize)
                         .after(tonemapping)
                         .before(fxaa)
                         .before(smaa),
-                    (stylize::<true>, draw_marks::<true>)
+                    (stylize::<true>, draw_highlights::<true>)
                         .chain()
                         .in_set(ComicsSystems::Print)
                         .after(ComicsSystems::Stylize)

@@ -17,7 +17,7 @@ use bevy::{
 };
 
 #[cfg(feature = "objects")]
-use super::marks::{MarkPipelines, MarkRequests, remove_marks};
+use super::highlights::{HighlightPipelines, HighlightRequests, remove_highlights};
 use super::{
     Plan, ViewPlan,
     compiling::{are_compiling, is_compiling},
@@ -49,7 +49,7 @@ pub(super) struct Requests {
     ids: Option<IdRequest>,
     places: Option<ObjectDepthRequest>,
     #[cfg(feature = "objects")]
-    marks: Option<MarkRequests>,
+    highlights: Option<HighlightRequests>,
     fused: Option<FusedRequest>,
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct Services<'w> {
     stylize: ResMut<'w, SpecializedRenderPipelines<StylizePipeline>>,
     stylize_pipeline: Res<'w, StylizePipeline>,
     #[cfg(feature = "objects")]
-    marks: MarkPipelines<'w>,
+    highlights: HighlightPipelines<'w>,
 }
 
 impl Services<'_> {
@@ -105,10 +105,10 @@ impl Services<'_> {
                 pressure: plan.pressure(view.scale_factor),
             });
         #[cfg(feature = "objects")]
-        let marks = {
+        let highlights = {
             let scene = (scene, uniform);
             let lines = &mut self.lines;
-            (self.marks).requests(lines, cache, (plan, view), scene, (extracted, camera))
+            (self.highlights).requests(lines, cache, (plan, view), scene, (extracted, camera))
         };
         Requests {
             range,
@@ -116,7 +116,7 @@ impl Services<'_> {
             ids,
             places,
             #[cfg(feature = "objects")]
-            marks,
+            highlights,
             fused,
         }
     }
@@ -300,7 +300,7 @@ impl Requests {
         let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
         #[cfg(feature = "objects")]
         let lines = lines
-            || (self.marks.as_ref())
+            || (self.highlights.as_ref())
                 .is_some_and(|m| are_compiling(m.passes(), cache) || render(m.pipeline()));
         let fused = (self.fused.as_ref()).is_some_and(|f| f.pipelines().any(render));
         range || lines || fused
@@ -331,9 +331,9 @@ impl Requests {
             None => view.remove::<FusedRequest>(),
         };
         #[cfg(feature = "objects")]
-        match self.marks {
-            Some(marks) => marks.put(entity, layer, commands),
-            None => remove_marks(entity, layer, commands),
+        match self.highlights {
+            Some(highlights) => highlights.put(entity, layer, commands),
+            None => remove_highlights(entity, layer, commands),
         }
         #[cfg(not(feature = "objects"))]
         let _ = layer;

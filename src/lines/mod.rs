@@ -53,8 +53,8 @@ pub(crate) use modifiers::{LineLayersUniform, SheetUniform};
 pub(crate) use passes::{FindPass, LinePasses, LinePipelines};
 pub(crate) use prepare::ViewLines;
 #[cfg(feature = "objects")]
-pub(crate) use record::MarkKey;
-pub(crate) use record::{MarkPipeline, ViewMarks, draw_marks};
+pub(crate) use record::HighlightKey;
+pub(crate) use record::{HighlightPipeline, ViewHighlights, draw_highlights};
 pub(crate) use request::{LineRequest, MemoryRequest};
 pub(crate) use settings::{FogUniform, LinesUniform, ViewFog, has_fog};
 pub(crate) use tiles::{TileList, TileLists, tile_shader, vertices};
@@ -75,7 +75,7 @@ pub(crate) fn build_render(app: &mut App) {
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
         .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<MarkPipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<HighlightPipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -92,7 +92,7 @@ pub(crate) fn build_render(app: &mut App) {
     #[cfg(feature = "objects")]
     render_app.add_systems(
         Core3d,
-        record::find_marks
+        record::find_highlights
             .after(ComicsSystems::Outlines)
             .before(Core3dSystems::MainPass),
     );
@@ -151,7 +151,7 @@ fn load_shaders(app: &mut App) {
     embedded_asset!(app, "find/faithful.wgsl");
     embedded_asset!(app, "draw/draw.wgsl");
     embedded_asset!(app, "memory/remember.wgsl");
-    embedded_asset!(app, "record/marks.wgsl");
+    embedded_asset!(app, "record/highlights.wgsl");
 }
 
 fn init_pipelines(
@@ -167,5 +167,5 @@ fn init_pipelines(
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
     commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
     commands.insert_resource(MemoryPipeline::new(&fullscreen, &assets));
-    commands.insert_resource(MarkPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(HighlightPipeline::new(&fullscreen, &assets));
 }

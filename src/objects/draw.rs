@@ -92,7 +92,7 @@ pub(super) fn draw_object_ids(
     }
     if let Some((request, layer)) = layer {
         let targets = [Some(attachment(&layer.ids.default_view, LoadOp::default()))];
-        let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
+        let outcome = draw(layer.pass(&targets), request.samples, Layer::Highlighted);
         let outcome = outcome.unwrap_or_else(StageOutcome::Skipped);
         ledger.set(request.camera, ComicsStage::HighlightedObjects, outcome);
     }

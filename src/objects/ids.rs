@@ -34,11 +34,11 @@ use super::{
     changes::ChangedObjects,
     depth_test::DepthTest,
     groups::ObjectGroups,
+    highlights::HighlightedObjects,
     items::{Drawn, IdItems, Missing},
     layer::LayerRequest,
     levels::{FadingMeshes, Levels},
     line_widths::WidthViews,
-    marks::Marks,
     object_ids::ObjectIds,
     phase::{Bin, Instance, Layer, ObjectIdPhase, ObjectIdPhases, PhaseKey},
     ranged::InRange,
@@ -273,15 +273,15 @@ impl Queue<'_, '_> {
             let record = self.records.of(mesh.id(), cutoff, is_gone);
             self.phase.add(bin, Instance::new(mesh, input, record));
         }
-        if self.key.layer && self.records.marks.of(mesh.id()).is_some() {
-            let marked = self.items.bin(mesh, self.key.view, Drawn::Marked);
-            if let Ok((bin, input)) = marked
-                && let Some(record) = self.records.mark(mesh.id())
+        if self.key.layer && self.records.highlights.of(mesh.id()).is_some() {
+            let highlighted = self.items.bin(mesh, self.key.view, Drawn::Highlighted);
+            if let Ok((bin, input)) = highlighted
+                && let Some(record) = self.records.highlighted(mesh.id())
             {
                 self.phase.add(bin, Instance::new(mesh, input, record));
             }
             if found.is_err() {
-                found = marked;
+                found = highlighted;
             }
         }
         if let Err(Missing::NotLoaded) = found {
@@ -302,7 +302,7 @@ pub(super) struct Records<'w> {
     styles: Res<'w, ObjectStyles>,
     groups: Res<'w, ObjectGroups>,
     levels: Res<'w, Levels>,
-    marks: Res<'w, Marks>,
+    highlights: Res<'w, HighlightedObjects>,
     writes: Res<'w, DepthWrites>,
     sections: Res<'w, SectionStarts>,
 }
@@ -325,9 +325,9 @@ impl Records<'_> {
         ]
     }
 
-    /// The same of a marked mesh in the layer of marks.
-    fn mark(&mut self, mesh: Entity) -> Option<[u32; 4]> {
-        let (root, slot) = self.marks.of(mesh)?;
+    /// The same of a mesh in the layer of highlighted objects.
+    fn highlighted(&mut self, mesh: Entity) -> Option<[u32; 4]> {
+        let (root, slot) = self.highlights.of(mesh)?;
         Some([u32::from(self.ids.give(root)), u32::from(slot), 0, 0])
     }
 }

@@ -42,8 +42,8 @@ use super::{
     line_widths::{WideMeshes, WidthBindings},
     phase::{Bin, Layer, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::{
-        IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass, is_masked,
-        reads_material,
+        HighlightSpecializer, IdVariant, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
+        is_masked, reads_material,
     },
     sections::SectionStarts,
 };
@@ -125,7 +125,7 @@ pub(super) enum Drawn {
     /// Its id, and perhaps the widths of its lines.
     Ids { widths: bool },
     /// Its depth and id in the layer of highlighted objects.
-    Marked,
+    Highlighted,
 }
 
 /// Why a mesh is in no bin.
@@ -237,7 +237,7 @@ pub(super) struct IdItems<'w> {
     drawn: DrawnMeshes<'w>,
     shared: Res<'w, ObjectIdPipeline>,
     pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
-    marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
+    highlighted: ResMut<'w, SpecializedMeshPipelines<HighlightSpecializer>>,
     wide: Res<'w, WideMeshes>,
     test: Res<'w, DepthTest>,
     backdrops: Res<'w, Backdrops>,
@@ -288,11 +288,13 @@ impl IdItems<'_> {
         let specializer = self.shared.specializer(drawn.properties);
         let mut ahead = None;
         let (layer, pipeline) = match what {
-            Drawn::Marked => {
+            Drawn::Highlighted => {
                 let key = (key, IdVariant::default());
-                let specializer = MarkSpecializer(specializer);
-                let pipeline = self.marked.specialize(cache, &specializer, key, layout);
-                (Layer::Marked, pipeline)
+                let specializer = HighlightSpecializer(specializer);
+                let pipeline = self
+                    .highlighted
+                    .specialize(cache, &specializer, key, layout);
+                (Layer::Highlighted, pipeline)
             }
             Drawn::Ids { widths } => {
                 let variant = self.variant(entity.id(), &drawn, widths);

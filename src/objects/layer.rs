@@ -45,7 +45,7 @@ impl ViewLayer {
         targets: &'a [Option<RenderPassColorAttachment<'a>>],
     ) -> RenderPassDescriptor<'a> {
         RenderPassDescriptor {
-            label: Some("comics_marked_objects"),
+            label: Some("comics_highlighted_objects"),
             color_attachments: targets,
             depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
                 view: &self.depth.default_view,
@@ -75,8 +75,8 @@ pub(super) fn prepare_layers(
             textures.get(&device, gpu::texture(label, size, format, usage))
         };
         let layer = ViewLayer {
-            depth: texture("comics_marked_depth", CORE_3D_DEPTH_FORMAT),
-            ids: texture("comics_marked_ids", ID_FORMAT),
+            depth: texture("comics_highlighted_depth", CORE_3D_DEPTH_FORMAT),
+            ids: texture("comics_highlighted_ids", ID_FORMAT),
         };
         commands.entity(view).insert(layer);
     }

@@ -15,6 +15,8 @@ mod draw;
 #[cfg(feature = "objects")]
 mod groups;
 #[cfg(feature = "objects")]
+mod highlights;
+#[cfg(feature = "objects")]
 mod ids;
 #[cfg(feature = "objects")]
 mod inherit;
@@ -32,8 +34,6 @@ mod levels;
 mod lightmaps;
 #[cfg(feature = "objects")]
 mod line_widths;
-#[cfg(feature = "objects")]
-mod marks;
 mod object_depths;
 #[cfg(feature = "objects")]
 mod object_ids;
@@ -76,15 +76,15 @@ pub use depth_test::ObjectIdDepthTest;
 #[cfg(feature = "objects")]
 pub use groups::{OutlineGroup, SplitPrimitives};
 #[cfg(feature = "objects")]
+pub(crate) use highlights::HighlightedObjects;
+#[cfg(feature = "objects")]
+pub use highlights::{SelectionOutline, XRayOutline};
+#[cfg(feature = "objects")]
 pub(crate) use layer::{LayerRequest, ViewLayer};
 #[cfg(feature = "objects")]
 pub(crate) use levels::{FadingMeshes, LevelPlaces, Levels};
 #[cfg(feature = "objects")]
 pub use line_widths::LineWidths;
-#[cfg(feature = "objects")]
-pub(crate) use marks::Marks;
-#[cfg(feature = "objects")]
-pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use object_ids::ObjectIds;
 #[cfg(feature = "objects")]
@@ -228,15 +228,15 @@ fn update_object_styles(
 
 /// The table of the lines of highlighted objects on the GPU.
 #[derive(bevy::ecs::resource::Resource, Default)]
-pub(crate) struct MarkStyleBuffer(pub ObjectStyleBuffer);
+pub(crate) struct HighlightStyleBuffer(pub ObjectStyleBuffer);
 
 #[cfg(feature = "objects")]
-fn update_mark_styles(
-    mut buffer: ResMut<MarkStyleBuffer>,
-    marks: Res<Marks>,
+fn update_highlight_styles(
+    mut buffer: ResMut<HighlightStyleBuffer>,
+    highlights: Res<HighlightedObjects>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
-    buffer.0.update(&marks.styles, &device, &queue);
+    buffer.0.update(&highlights.styles, &device, &queue);
 }
 
 /// Draws object ids for the views that request them, and uploads the outline styles of
@@ -271,7 +271,7 @@ impl Plugin for ObjectsPlugin {
             inherit::register::<ObjectSimplification>(app);
             inherit::register::<LineWidths>(app);
             depth_test::build(app);
-            marks::build(app);
+            highlights::build(app);
             groups::build(app);
             sections::build(app);
             transparent::build(app);
@@ -310,7 +310,7 @@ impl ObjectsPlugin {
         };
         render_app
             .init_gpu_resource::<ObjectStyleBuffer>()
-            .init_gpu_resource::<MarkStyleBuffer>()
+            .init_gpu_resource::<HighlightStyleBuffer>()
             .init_resource::<ObjectStyles>()
             .add_systems(Render, update_object_styles.in_set(PrepareComics::Services));
     }

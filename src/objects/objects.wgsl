@@ -60,7 +60,7 @@ fn texel_width(at: vec2<i32>, sample: i32) -> f32 {
 
 #ifdef OBJECT_IDS
 // The object at a pixel and sample of the prepass textures: its id, 0 if there is none, and
-// its marks: bits 0 to 7 are the slot of its style, bits 8 to 15 its section.
+// its slot and section: bits 0 to 7 are the slot of its style, bits 8 to 15 its section.
 fn texel_object(at: vec2<i32>, sample: i32) -> vec2<u32> {
     return textureLoad(object_texture, at, sample).xy;
 }

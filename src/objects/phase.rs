@@ -57,7 +57,7 @@ pub(crate) enum Layer {
     /// The view's own depth: a transparent mesh.
     OwnDepth,
     /// The layer of highlighted objects.
-    Marked,
+    Highlighted,
 }
 
 impl PhaseItem for ObjectIdItem {
@@ -156,7 +156,7 @@ pub(crate) struct ObjectIdPhase {
     free: Vec<usize>,
     /// The contents that have changed since the last [`settle`](Self::settle).
     touched: HashSet<usize>,
-    /// The contents that a mesh is in: of its ids or its own depth, and of its mark.
+    /// The contents that a mesh is in: that of its ids or its own depth, and that of the highlighted objects.
     places: MainEntityHashMap<[Option<u32>; 2]>,
     /// Meshes whose assets have not loaded.
     pub pending: MainEntityHashSet,
@@ -236,7 +236,7 @@ impl ObjectIdPhase {
         self.added += 1;
         self.contents[at].instances.push(instance);
         self.touched.insert(at);
-        let kind = usize::from(bin.layer == Layer::Marked);
+        let kind = usize::from(bin.layer == Layer::Highlighted);
         self.places.entry(instance.mesh).or_default()[kind] = Some(at as u32);
     }
 
@@ -383,12 +383,16 @@ mod tests {
         }
     }
 
-    fn add(phase: &mut ObjectIdPhase, mesh: MainEntity, (of, marked, input): (u128, bool, u32)) {
+    fn add(
+        phase: &mut ObjectIdPhase,
+        mesh: MainEntity,
+        (of, highlighted, input): (u128, bool, u32),
+    ) {
         let record = [0, input, 0, 0];
         let instance = Instance::new(mesh, input, record);
         phase.add(bin(of, Layer::Prepass), instance);
-        if marked {
-            phase.add(bin(of, Layer::Marked), instance);
+        if highlighted {
+            phase.add(bin(of, Layer::Highlighted), instance);
         }
     }
 }

@@ -226,10 +226,10 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
     }
 }
 
-/// The pipeline of a marked object: that of its id, with a depth test of its own.
-pub(super) struct MarkSpecializer(pub ObjectIdSpecializer);
+/// The pipeline of a highlighted object: that of its id, with a depth test of its own.
+pub(super) struct HighlightSpecializer(pub ObjectIdSpecializer);
 
-impl SpecializedMeshPipeline for MarkSpecializer {
+impl SpecializedMeshPipeline for HighlightSpecializer {
     type Key = (ErasedMaterialPipelineKey, IdVariant);
 
     fn specialize(
@@ -238,7 +238,7 @@ impl SpecializedMeshPipeline for MarkSpecializer {
         layout: &MeshVertexBufferLayoutRef,
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
         let mut descriptor = self.0.specialize(key, layout)?;
-        descriptor.label = Some("comics_marked_objects".into());
+        descriptor.label = Some("comics_highlighted_objects".into());
         if let Some(depth) = &mut descriptor.depth_stencil {
             depth.depth_write_enabled = Some(true);
             depth.depth_compare = Some(CompareFunction::GreaterEqual);

@@ -24,6 +24,7 @@ use super::{
     depths,
     draw::draw_object_ids,
     groups::ObjectGroups,
+    highlights::HighlightedObjects,
     ids::{prepare_object_ids, queue_object_ids},
     instances::{bind_instances, expand_instances, place_instances},
     items::{DrawId, DrawIdWithMaterial},
@@ -31,14 +32,13 @@ use super::{
     levels::Levels,
     lightmaps::{Lightmapped, extract_lightmapped},
     line_widths::{WideMeshes, WidthBindings, WidthViews, prepare_line_widths},
-    marks::Marks,
     object_ids::{ObjectIds, begin_frame},
     phase::{ObjectIdItem, ObjectIdPhases},
-    pipeline::{MarkSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
+    pipeline::{HighlightSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
     ranged::{RangedMeshes, extract_ranged_meshes},
     sections::{SectionBuffer, SectionStarts, extract_sections, prepare_sections},
     table::ObjectStyles,
-    update_mark_styles,
+    update_highlight_styles,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
@@ -49,8 +49,8 @@ pub(crate) fn build(app: &mut App) {
     };
     render_app
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
-        .init_gpu_resource::<SpecializedMeshPipelines<MarkSpecializer>>()
-        .init_resource::<Marks>()
+        .init_gpu_resource::<SpecializedMeshPipelines<HighlightSpecializer>>()
+        .init_resource::<HighlightedObjects>()
         .init_resource::<Levels>()
         .init_resource::<Backdrops>()
         .init_gpu_resource::<SectionBuffer>()
@@ -99,7 +99,7 @@ fn add_systems(render_app: &mut SubApp) {
                 begin_frame,
                 follow::<ObjectStyles>,
                 follow::<ObjectGroups>,
-                follow::<Marks>,
+                follow::<HighlightedObjects>,
                 follow::<WideMeshes>,
                 follow::<Levels>,
                 follow::<Backdrops>,
@@ -121,7 +121,7 @@ fn add_systems(render_app: &mut SubApp) {
                     .in_set(RenderSystems::QueueMeshes),
                 place_instances.in_set(RenderSystems::PrepareResourcesBatchPhases),
                 bind_instances.in_set(RenderSystems::PrepareBindGroups),
-                (prepare_object_ids, prepare_layers, update_mark_styles)
+                (prepare_object_ids, prepare_layers, update_highlight_styles)
                     .in_set(PrepareComics::Services),
                 prepare_line_widths
                     .in_set(PrepareComics::Services)

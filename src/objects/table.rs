@@ -70,7 +70,7 @@ pub(crate) struct ObjectStyles {
     /// Some mesh is divided because it has `MeshSections`.
     pub asked_sections: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
-    pub marks: bool,
+    pub highlights: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub widths: bool,
     /// Some mesh fades at some distance.
@@ -106,7 +106,7 @@ pub(crate) struct ObjectChanges {
     /// The colour effects leave some object alone.
     pub unstyled: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
-    pub marks: bool,
+    pub highlights: bool,
     /// Screens follow some object.
     pub anchored: bool,
     /// Some mesh fades at some distance.
@@ -129,7 +129,7 @@ impl ObjectStyles {
             asked_sections: self.asked_sections,
             widths: self.widths,
             unstyled,
-            marks: self.marks,
+            highlights: self.highlights,
             fades: self.fades,
             anchored: self.entries.iter().any(|e| e.anchor_size > 0.0),
         }
@@ -299,7 +299,7 @@ impl super::changes::Follow for ObjectStyles {
         self.faded.follow(&main.faded, changed);
         self.entries.clone_from(&main.entries);
         self.sections = main.sections;
-        self.marks = main.marks;
+        self.highlights = main.highlights;
         self.widths = main.widths;
         self.fades = main.fades;
     }

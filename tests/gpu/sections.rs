@@ -32,8 +32,8 @@ fn creases() -> Outlines {
     creases_of(CreaseSource::Normals)
 }
 
-fn section(marks: u32) -> u32 {
-    marks >> 8
+fn section(slot_section: u32) -> u32 {
+    slot_section >> 8
 }
 
 /// Steps until the sections of all visible objects are as they should be.
@@ -52,13 +52,18 @@ pub fn wait(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
 
 /// How many sections are visible.
 fn kinds(ids: &IdImage) -> usize {
-    let marks = ids.pixels.iter().map(|[_, marks]| section(*marks));
-    let found: HashSet<u32> = marks.filter(|section| *section != 0).collect();
+    let sections = ids
+        .pixels
+        .iter()
+        .map(|[_, slot_section]| section(*slot_section));
+    let found: HashSet<u32> = sections.filter(|section| *section != 0).collect();
     found.len()
 }
 
 pub fn none_has_sections(ids: &IdImage) -> bool {
-    ids.pixels.iter().all(|[_, marks]| section(*marks) == 0)
+    ids.pixels
+        .iter()
+        .all(|[_, slot_section]| section(*slot_section) == 0)
 }
 
 /// All ink of the picture, which is white without lines.
@@ -198,7 +203,7 @@ fn cameras_choose_what_creases_are_found_by() {
     let other = small.world().spawn(other).id();
     assert_eq!(ink(&mut small, creases()), alone);
     let numbers = small.object_ids().expect("ids").pixels;
-    let found = |[_, marks]: &[u32; 2]| (1..64).contains(&section(*marks));
+    let found = |[_, slot_section]: &[u32; 2]| (1..64).contains(&section(*slot_section));
     assert!(numbers.iter().any(found), "the house has sections");
     let both = ink(&mut small, creases_of(Both));
     assert!(both > alone + 10.0, "{both}, {alone}");

@@ -21,27 +21,27 @@
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
-#ifdef MARKS
+#ifdef HIGHLIGHTS
 #import bevy_comics::lines::hidden::HIDDEN
 #endif
 
-// The bits of an object's marks that are its slot; above them is its section.
+// The bits of `slot_section` that are the slot of an object's style; above them is its section.
 const SLOT: u32 = 255u;
 const ABOVE_SLOT: u32 = 8u;
 
-#ifdef MARKS
+#ifdef HIGHLIGHTS
 // Bits of ObjectStyle::kinds of objects of which only hidden parts have lines, or only visible ones.
 const HIDDEN_ONLY: u32 = 16u;
 const VISIBLE_ONLY: u32 = 32u;
 #endif
 
-// The kinds of line that four objects draw, by their marks.
-fn kinds_of_four(marks: vec4<u32>) -> vec4<u32> {
+// The kinds of line that four objects draw, by their slots.
+fn kinds_of_four(slot_section: vec4<u32>) -> vec4<u32> {
 #ifdef OBJECT_STYLES
-    let slots = marks & vec4(SLOT);
+    let slots = slot_section & vec4(SLOT);
     let kinds = vec4(kinds_of(slots.x), kinds_of(slots.y), kinds_of(slots.z), kinds_of(slots.w));
-#ifdef MARKS
-    let hidden = has(marks, HIDDEN);
+#ifdef HIGHLIGHTS
+    let hidden = has(slot_section, HIDDEN);
     return select(kinds, vec4(0u), (has(kinds, HIDDEN_ONLY) & !hidden) | (has(kinds, VISIBLE_ONLY) & hidden));
 #else
     return kinds;
@@ -74,7 +74,7 @@ fn preferred(at: Borders, reference: vec4<f32>) -> vec4<bool> {
     // larger section.
     let object = at.object_here > at.object_there;
     let has_step = abs(at.in_front) > STEP * reference;
-    let parallel = select(at.marks_here > at.marks_there, at.in_front < vec4(0.0), has_step);
+    let parallel = select(at.slot_section_here > at.slot_section_there, at.in_front < vec4(0.0), has_step);
     let surface = select(at.faces_more > vec4(0.0), parallel, at.folds < vec4(PARALLEL));
     return select(surface, object, at.object_here != at.object_there);
 #else
@@ -167,8 +167,8 @@ const BENT_TANGENT: f32 = 0.0875;
 const TURN: f32 = 5e-5;
 
 // 0 where there is no section.
-fn sections_of(s: Lines, marks: vec4<u32>) -> vec4<u32> {
-    let sections = marks >> vec4(ABOVE_SLOT);
+fn sections_of(s: Lines, slot_section: vec4<u32>) -> vec4<u32> {
+    let sections = slot_section >> vec4(ABOVE_SLOT);
     let in_group = (sections > vec4(LAST_ALONE)) & (sections <= vec4(LAST_FOUND_IN_GROUP));
     let found = (sections <= vec4(LAST_FOUND)) | in_group;
     return select(sections, vec4(0u), found & vec4(s.found_sections == 0u));
@@ -192,8 +192,8 @@ fn has_step_beside(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
 // Whether two sections of an object meet. Unless one of them was asked for, the surface must also
 // bend there, or have a step.
 fn section_borders(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
-    let here = sections_of(s, at.marks_here);
-    let there = sections_of(s, at.marks_there);
+    let here = sections_of(s, at.slot_section_here);
+    let there = sections_of(s, at.slot_section_there);
     let differ = (here != there) & (here != vec4(0u)) & (there != vec4(0u));
     let asked_here = (here > vec4(LAST_FOUND)) & (here <= vec4(LAST_ALONE));
     let asked_there = (there > vec4(LAST_FOUND)) & (there <= vec4(LAST_ALONE));
@@ -212,7 +212,7 @@ fn section_borders(s: Lines, at: Borders, reference: vec4<f32>) -> vec4<bool> {
 }
 
 fn are_silent(at: Borders) -> vec4<bool> {
-    return max(at.marks_here, at.marks_there) >> vec4(ABOVE_SLOT) == vec4(SILENT);
+    return max(at.slot_section_here, at.slot_section_there) >> vec4(ABOVE_SLOT) == vec4(SILENT);
 }
 #endif
 
@@ -290,7 +290,7 @@ fn are_ledges(found: Found, s: Lines, at: Borders, here: vec4<u32>, there: vec4<
 
 // The packed cracks, with the width and opacity of the lines of their owners.
 fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
-    let owner_slot = select(at.marks_there, at.marks_here, found.mine) & vec4(SLOT);
+    let owner_slot = select(at.slot_section_there, at.slot_section_here, found.mine) & vec4(SLOT);
     var opacity = vec4(1.0);
     var half_width = half_width_of(owner_slot, s);
 #ifdef FADING
@@ -328,8 +328,8 @@ fn response_factors(at: Borders) -> vec4<f32> {
 fn cracks(s: Lines, at: Borders) -> Cracks {
     let reference = s.reference_factor * max(at.here, at.there) + s.reference_constant;
     let here_nearer = at.here >= at.there;
-    let here = kinds_of_four(at.marks_here);
-    let there = kinds_of_four(at.marks_there);
+    let here = kinds_of_four(at.slot_section_here);
+    let there = kinds_of_four(at.slot_section_there);
     var found = Found(vec4(0u), vec4(0.0), here_nearer, vec4(false));
 #ifdef SILHOUETTES
     found = add_silhouettes(found, s, at, reference, select(there, here, here_nearer));

@@ -12,8 +12,8 @@
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
-#ifdef MARKS
-#import bevy_comics::lines::hidden::marked_object
+#ifdef HIGHLIGHTS
+#import bevy_comics::lines::hidden::highlighted_object
 #else ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
@@ -34,10 +34,10 @@ fn normal_at(at: vec2<i32>) -> vec4<f32> {
 #endif
 
 #ifdef OBJECT_IDS
-// The object at a pixel and its marks.
+// The object at a pixel, and its slot and section.
 fn object_at(at: vec2<i32>) -> vec2<u32> {
-#ifdef MARKS
-    return marked_object(at, texel_depth(at, 0));
+#ifdef HIGHLIGHTS
+    return highlighted_object(at, texel_depth(at, 0));
 #else
 #ifdef SKY_BEYOND
     if is_drawn_sky(at) {
@@ -141,9 +141,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let east = object_at(origin + vec2(high.x, p.y));
     let south = object_at(origin + vec2(p.x, high.y));
     at.object_here = vec4(here.x);
-    at.marks_here = vec4(here.y);
+    at.slot_section_here = vec4(here.y);
     at.object_there = vec2(east.x, south.x).xyxy;
-    at.marks_there = vec2(east.y, south.y).xyxy;
+    at.slot_section_there = vec2(east.y, south.y).xyxy;
 #endif
     return cracks(line_pass.settings, at).packed.xy;
 }

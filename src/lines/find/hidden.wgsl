@@ -16,7 +16,7 @@
 @group(0) @binding(27) var picture_depth: texture_2d<f32>;
 #endif
 
-// The bit of an object's marks, above its section, where it is hidden.
+// The bit above an object's slot and section where it is hidden.
 const HIDDEN: u32 = 0x10000u;
 
 // What hides an object is in front of it by this part of a jump at least.
@@ -24,7 +24,7 @@ const LEAST: f32 = 0.1;
 
 // The object at a pixel of the depth texture, see texel_object, with its bit. `own`: its raw
 // depth.
-fn marked_object(at: vec2<i32>, own: f32) -> vec2<u32> {
+fn highlighted_object(at: vec2<i32>, own: f32) -> vec2<u32> {
     let s = line_pass.settings;
     let jump = LEAST * s.jump * (s.reference_factor * own + s.reference_constant);
     let d = raw_depth(view.raw, vec2<u32>(at), textureLoad(picture_depth, at, 0).r);

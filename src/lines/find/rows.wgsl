@@ -16,8 +16,8 @@
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
-#ifdef MARKS
-#import bevy_comics::lines::hidden::marked_object
+#ifdef HIGHLIGHTS
+#import bevy_comics::lines::hidden::highlighted_object
 #else ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
@@ -60,7 +60,7 @@ struct Above {
     // HARD: how much they face owner_direction.
     facings: array<vec4<f32>, 3>,
     objects: array<vec4<u32>, 3>,
-    marks: array<vec4<u32>, 3>,
+    slot_section: array<vec4<u32>, 3>,
     // Without BOUNDS: borders to the east in the two rows above.
     east: array<Borders, 2>,
 }
@@ -74,8 +74,8 @@ struct Bends {
 }
 
 // The borders between four pixels (here) and their neighbours (there). Without EXCESS
-// excesses are 0, without NORMALS folds are, without OBJECT_IDS objects and
-// marks are (see texel_object). BOUNDS: for walk.wgsl, which does not ask what only excludes
+// excesses are 0, without NORMALS folds are, without OBJECT_IDS objects,
+// slots and sections are (see texel_object). BOUNDS: for walk.wgsl, which does not ask what only excludes
 // cracks; `outdone`, `departs`, `ridge` and `rim` are
 // not set.
 struct Borders {
@@ -93,8 +93,8 @@ struct Borders {
     in_front: vec4<f32>,
     object_here: vec4<u32>,
     object_there: vec4<u32>,
-    marks_here: vec4<u32>,
-    marks_there: vec4<u32>,
+    slot_section_here: vec4<u32>,
+    slot_section_there: vec4<u32>,
     // BENDS: how much raw depth bends at the crack, at the next ones on both sides of it, or at those that meet
     // its ends at a right angle; as a fraction of what a jump is one of.
     bend: vec4<f32>,
@@ -294,11 +294,11 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
 #endif
 
 #ifdef OBJECT_IDS
-// The object at a pixel and its marks.
+// The object at a pixel, and its slot and section.
 fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
     let at = c.origin + vec2(x, y);
-#ifdef MARKS
-    return marked_object(at, texel_depth(at, 0));
+#ifdef HIGHLIGHTS
+    return highlighted_object(at, texel_depth(at, 0));
 #else
 #ifdef SKY_BEYOND
     if is_drawn_sky(at) {
@@ -309,7 +309,7 @@ fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
 #endif
 }
 
-// Reads the objects of a row and their marks.
+// Reads the objects of a row, and their slots and sections.
 fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<function, Found>) {
     let o_a = object_at(c, c.own.x, y);
     let o_b = object_at(c, c.own.y, y);
@@ -318,18 +318,18 @@ fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
     let o_e = object_at(c, c.east.x, y);
     (*found).east.object_here = vec4(o_a.x, o_b.x, o_c.x, o_d.x);
     (*found).east.object_there = vec4(o_b.x, o_c.x, o_d.x, o_e.x);
-    (*found).east.marks_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);
-    (*found).east.marks_there = vec4(o_b.y, o_c.y, o_d.y, o_e.y);
+    (*found).east.slot_section_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);
+    (*found).east.slot_section_there = vec4(o_b.y, o_c.y, o_d.y, o_e.y);
     (*found).south.object_here = (*above).objects[2];
     (*found).south.object_there = (*above).objects[1];
-    (*found).south.marks_here = (*above).marks[2];
-    (*found).south.marks_there = (*above).marks[1];
+    (*found).south.slot_section_here = (*above).slot_section[2];
+    (*found).south.slot_section_there = (*above).slot_section[1];
     (*above).objects[2] = (*above).objects[1];
     (*above).objects[1] = (*above).objects[0];
     (*above).objects[0] = (*found).east.object_here;
-    (*above).marks[2] = (*above).marks[1];
-    (*above).marks[1] = (*above).marks[0];
-    (*above).marks[0] = (*found).east.marks_here;
+    (*above).slot_section[2] = (*above).slot_section[1];
+    (*above).slot_section[1] = (*above).slot_section[0];
+    (*above).slot_section[0] = (*found).east.slot_section_here;
 }
 #endif
 

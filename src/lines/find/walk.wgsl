@@ -52,7 +52,7 @@ fn may_be_cracks(s: Lines, at: Borders) -> bool {
     found |= at.object_here != at.object_there;
 #endif
 #ifdef SECTIONS
-    found |= at.marks_here != at.marks_there;
+    found |= at.slot_section_here != at.slot_section_there;
 #endif
     return any(found);
 }

@@ -35,7 +35,7 @@ impl LineKey {
             (Self::NORMALS, float().build(7, stages)),
             (Self::OBJECT_IDS, ids_entry(false)),
             (Self::OBJECT_DEPTHS, object_depths_entry()),
-            (Self::MARKS, picture.build(27, stages)),
+            (Self::HIGHLIGHTS, picture.build(27, stages)),
             (Self::WIDTH_MAP, widths_entry(false, stages)),
             (Self::MOTION, float().build(24, stages)),
         ]

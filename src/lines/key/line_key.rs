@@ -38,7 +38,7 @@ bitflags! {
         const SECTIONS = 1 << 12;
         /// The lines are those of highlighted objects; and whether the depth that hides them is
         /// multisampled.
-        const MARKS = 1 << 13;
+        const HIGHLIGHTS = 1 << 13;
         const MULTISAMPLED_PICTURE = 1 << 14;
         /// The excess of steps in depth is computed. It excludes creases too.
         const EXCESS = 1 << 15;
@@ -150,7 +150,7 @@ impl LineKey {
         .union(Self::NORMALS)
         .union(Self::OBJECT_EDGES)
         .union(Self::SECTIONS)
-        .union(Self::MARKS)
+        .union(Self::HIGHLIGHTS)
         .union(Self::MULTISAMPLED_PICTURE)
         .union(Self::LEDGES);
 
@@ -214,8 +214,11 @@ impl LineKey {
             (creases && lines.finds_bends(), Self::BENDS),
             (object_edges, Self::OBJECT_EDGES),
             (creases && request.sections && request.ids, Self::SECTIONS),
-            (request.marks, Self::MARKS),
-            (request.marks && multisampled, Self::MULTISAMPLED_PICTURE),
+            (request.highlights, Self::HIGHLIGHTS),
+            (
+                request.highlights && multisampled,
+                Self::MULTISAMPLED_PICTURE,
+            ),
             (lines.fades(), Self::FADING),
             (fewer, Self::SIMPLIFIED_LINES),
             (request.finds_by_objects(), Self::FINDS_BY_OBJECTS),

@@ -14,7 +14,7 @@ use bevy::{
 };
 
 #[cfg(feature = "objects")]
-use super::marks::ViewMarks;
+use super::highlights::ViewHighlights;
 use super::{
     inputs::Inputs,
     ready::{Ready, ReadyCracks, search_tiles},
@@ -33,7 +33,7 @@ use crate::{
 #[cfg(feature = "objects")]
 use crate::{
     depth::surfaces::prepass_is_empty,
-    objects::{MarkStyleBuffer, ViewLayer},
+    objects::{HighlightStyleBuffer, ViewLayer},
 };
 #[cfg(feature = "objects")]
 use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
@@ -41,22 +41,22 @@ use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
 /// Records the passes that find the lines of the highlighted objects of the view, and draw their
 /// ink.
 #[cfg(feature = "objects")]
-pub(crate) fn find_marks(
+pub(crate) fn find_highlights(
     view: ViewQuery<(
-        &ViewMarks,
+        &ViewHighlights,
         (&ViewPrepassTextures, Option<&OwnSurfaces>),
         &ViewLayer,
     )>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
-    styles: Res<MarkStyleBuffer>,
+    styles: Res<HighlightStyleBuffer>,
     ledger: Res<StageLedger>,
     (binder, adapter): (Binder, Res<RenderAdapterInfo>),
     mut ctx: RenderContext,
 ) {
-    let (marks, (prepass, own), layer) = view.into_inner();
-    // Transparent meshes hide no marked object.
+    let (highlights, (prepass, own), layer) = view.into_inner();
+    // Transparent meshes hide no highlighted object.
     let own = own.filter(|_| prepass_is_empty(&adapter));
-    let Ok((request, passes, lines)) = layers.get(marks.layer) else {
+    let Ok((request, passes, lines)) = layers.get(highlights.layer) else {
         return;
     };
     let inputs = Inputs {

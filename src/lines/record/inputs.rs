@@ -176,7 +176,7 @@ impl Inputs<'_> {
             let places = self.sources.places.ok_or(NOT_READY)?;
             entries.push(entry(OBJECT_DEPTHS_BINDING, places.as_entire_binding()));
         }
-        if key.contains(LineKey::MARKS) {
+        if key.contains(LineKey::HIGHLIGHTS) {
             let picture = self.sources.picture.ok_or(NOT_READY)?;
             entries.push(entry(27, picture.into_binding()));
         }

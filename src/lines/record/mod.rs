@@ -2,14 +2,14 @@
 
 mod completing;
 mod find_lines;
+mod highlights;
 mod inputs;
-mod marks;
 mod ready;
 mod sources;
 
+#[cfg(feature = "objects")]
+pub(crate) use find_lines::find_highlights;
 pub(crate) use find_lines::find_lines;
 #[cfg(feature = "objects")]
-pub(crate) use find_lines::find_marks;
-#[cfg(feature = "objects")]
-pub(crate) use marks::MarkKey;
-pub(crate) use marks::{MarkPipeline, ViewMarks, draw_marks};
+pub(crate) use highlights::HighlightKey;
+pub(crate) use highlights::{HighlightPipeline, ViewHighlights, draw_highlights};

@@ -89,7 +89,7 @@ pub(crate) struct LineRequest {
     /// Meshes are divided into sections, or may be later.
     pub sections: bool,
     /// The lines are those of highlighted objects.
-    pub marks: bool,
+    pub highlights: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
     /// The widths of lines are drawn and can be read.

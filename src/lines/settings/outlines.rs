@@ -216,7 +216,7 @@ impl Outlines {
 
     /// The lines of highlighted objects: their styles say which kinds, and how wide they are.
     #[cfg(feature = "objects")]
-    pub(crate) const MARKS: Self = Self {
+    pub(crate) const HIGHLIGHTS: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
         objects: Some(ObjectEdges {
             color: bevy::color::Color::BLACK,

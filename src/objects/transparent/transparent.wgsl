@@ -10,7 +10,7 @@
 #endif
 #endif
 
-// Id, marks, unused, and the bits of the least alpha.
+// Id, slot, unused, and the bits of the least alpha.
 @group(1) @binding(0) var<storage, read> objects: array<vec4<u32>>;
 
 struct Surface {

@@ -27,8 +27,8 @@ use crate::{
 struct Starts(usize);
 
 /// The small scene, which has no light: the engine does not draw the same light after it has
-/// recovered. Its app asks for a new device after an error. Also gives the objects that [`mark`]
-/// marks.
+/// recovered. Its app asks for a new device after an error. Also gives the objects that [`highlight`]
+/// highlights.
 fn scene(size: UVec2, msaa: Msaa) -> (Small, [Entity; 2]) {
     let mut headless = Headless::new(options(size), ComicsPlugin);
     headless
@@ -55,8 +55,8 @@ fn scene(size: UVec2, msaa: Msaa) -> (Small, [Entity; 2]) {
     spawn_objects(world);
     let camera = world.spawn(camera(target, msaa)).id();
     let mut small = Small { headless, camera };
-    let marked = put_objects(&mut small);
-    (small, marked)
+    let highlighted = put_objects(&mut small);
+    (small, highlighted)
 }
 
 /// Objects of the kinds that this crate draws once more. Gives one in front, and one that is partly
@@ -90,7 +90,7 @@ fn put_objects(small: &mut Small) -> [Entity; 2] {
 }
 
 /// Gives objects outlines that need no style, or takes them away.
-fn mark(small: &mut Small, [front, behind]: [Entity; 2], on: bool) {
+fn highlight(small: &mut Small, [front, behind]: [Entity; 2], on: bool) {
     let world = small.world();
     if on {
         world.entity_mut(front).insert(SelectionOutline::default());
@@ -118,7 +118,11 @@ fn wait_for_sections(small: &mut Small, when: &str) {
     for _ in 0..200 {
         small.headless.step(2);
         let ids = small.object_ids();
-        if ids.is_some_and(|ids| ids.pixels.iter().any(|[_, marks]| marks >> 8 != 0)) {
+        if ids.is_some_and(|ids| {
+            ids.pixels
+                .iter()
+                .any(|[_, slot_section]| slot_section >> 8 != 0)
+        }) {
             return;
         }
         std::thread::sleep(Duration::from_millis(5));
@@ -155,13 +159,13 @@ type Styles = [(&'static str, Option<ComicStyle>)];
 
 /// The picture of the engine alone, and those of the styles, with highlighted objects.
 fn shoot_all(
-    (small, marked): (&mut Small, [Entity; 2]),
+    (small, highlighted): (&mut Small, [Entity; 2]),
     msaa: Msaa,
     styles: &Styles,
 ) -> (RgbaImage, Vec<RgbaImage>) {
-    mark(small, marked, false);
+    highlight(small, highlighted, false);
     let plain = shoot(small, msaa, None);
-    mark(small, marked, true);
+    highlight(small, highlighted, true);
     let styles = styles.iter();
     let styled = styles.map(|(_, style)| shoot(small, msaa, style.as_ref()));
     (plain, styled.collect())
@@ -169,13 +173,13 @@ fn shoot_all(
 
 /// The camera has the last group while the device is replaced.
 fn check(size: UVec2, msaa: Msaa, groups: &[Group]) {
-    let (mut small, marked) = scene(size, msaa);
+    let (mut small, highlighted) = scene(size, msaa);
     let mut styles = vec![("highlighted objects", None)];
     styles.extend(groups.iter().map(|(name, style)| (*name, Some(style()))));
     let (last, all) = styles.last().cloned().expect("there is a first one");
     shoot(&mut small, msaa, all.as_ref());
     wait_for_sections(&mut small, "before");
-    let (plain, before) = shoot_all((&mut small, marked), msaa, &styles);
+    let (plain, before) = shoot_all((&mut small, highlighted), msaa, &styles);
     for (picture, (name, _)) in before.iter().zip(&styles) {
         let off = changed(&plain, picture);
         assert!(off > 0.005, "{msaa:?}, {name}: {off} is changed");
@@ -185,7 +189,7 @@ fn check(size: UVec2, msaa: Msaa, groups: &[Group]) {
     // The visible range, which is smoothed, settles.
     small.headless.step(120);
     let kept = small.picture();
-    let (plain_again, after) = shoot_all((&mut small, marked), msaa, &styles);
+    let (plain_again, after) = shoot_all((&mut small, highlighted), msaa, &styles);
     let off = changed(&plain, &plain_again);
     assert_eq!(
         off, 0.0,

@@ -125,7 +125,7 @@ struct Picture {
     normals: Vec<[f32; 4]>,
     /// What these stand for.
     facing: FloatImage,
-    /// Ids; and marks, which are a slot and a section.
+    /// Ids; and the slot and the section.
     ids: IdImage,
 }
 
@@ -148,12 +148,12 @@ impl Picture {
                 facing = pick(n, &NORMALS);
             }
             let [a, b, c] = facing.map(|c| 0.5 * c + 0.5);
-            let marks = pick(n, &[0u32, 1, 0x0102, 0x0203, 0xc801, 0xff00]);
+            let slot_section = pick(n, &[0u32, 1, 0x0102, 0x0203, 0xc801, 0xff00]);
             depths.push(depth as f32 / 256.0);
             // The texel of the sky is cleared to 1.
             let is_sky = depth == 0;
             normals.push(if is_sky { [1.0; 4] } else { [a, b, c, 1.0] });
-            ids.push([pick(n, &[0u32, 1, 1, 2, 70_000]), marks]);
+            ids.push([pick(n, &[0u32, 1, 1, 2, 70_000]), slot_section]);
         }
         let facing = normals.iter().map(|texel| texel.map(|c| 2.0 * c - 1.0));
         Self {

@@ -5,18 +5,18 @@ use super::{
     *,
 };
 
-const MARKED: &str = "#import bevy_comics::depth::view::view
-    #import bevy_comics::lines::hidden::marked_object
+const IMPORTS: &str = "#import bevy_comics::depth::view::view
+    #import bevy_comics::lines::hidden::highlighted_object
     #import bevy_comics::lines::pass::line_pass";
 
-/// The object, its marks and whether it is hidden, in the second of two pixels.
+/// The object, its slot and section, and whether it is hidden, in the second of two pixels.
 const BODY: &str = "view.raw.nearest = 1.0;
     view.raw.view_z = vec4(0.0, 0.0, 0.0, -1.0);
     view.raw.view_w = vec4(0.0, 0.0, 1.0, 0.0);
     line_pass.settings.jump = i(1u);
     line_pass.settings.reference_factor = i(2u);
     line_pass.settings.reference_constant = i(3u);
-    let found = marked_object(vec2(1, 0), i(0u));
+    let found = highlighted_object(vec2(1, 0), i(0u));
     return vec4(f32(found.x), f32(found.y & 0xffffu), f32(found.y >> 16u), 0.0);";
 
 /// A picture at depth 0.5 hides what is more than a tenth of a jump behind it: of a jump that is a
@@ -43,7 +43,7 @@ fn objects_are_hidden_by_what_is_a_tenth_of_a_jump_in_front() {
         let entries = [texture(8, &ids), texture(27, &picture)];
         let rows = [[own, jump, factor, constant]];
         let definitions = [("OBJECT_IDS", None)];
-        let found = gpu().evaluate_bound(&definitions, &entries, MARKED, BODY, &rows);
+        let found = gpu().evaluate_bound(&definitions, &entries, IMPORTS, BODY, &rows);
         let bit = f32::from(u8::from(hidden));
         let want = [70_000.0, f32::from(0xc801u16), bit, 0.0];
         assert_eq!(found[0], want, "{shown}, {:?}", rows[0]);

@@ -18,7 +18,7 @@ const KINDS: &str = "
     | CREASES LEDGES | SILHOUETTES CREASES OBJECT_EDGES LEDGES
     | CREASES SECTIONS | SILHOUETTES CREASES OBJECT_EDGES SECTIONS
     | SILHOUETTES CREASES OBJECT_EDGES LEDGES SECTIONS
-    | MARKS SILHOUETTES OBJECT_EDGES | MARKS SILHOUETTES OBJECT_EDGES MULTISAMPLED_PICTURE";
+    | HIGHLIGHTS SILHOUETTES OBJECT_EDGES | HIGHLIGHTS SILHOUETTES OBJECT_EDGES MULTISAMPLED_PICTURE";
 
 /// What cracks are found by. Without compute shaders, lines are not completed.
 fn finding() -> Vec<Variant> {
@@ -47,7 +47,7 @@ fn finding() -> Vec<Variant> {
         found(names)
     }
     fn completed(mut names: Vec<&'static str>) -> Vec<&'static str> {
-        if has_any(&names, &["LEDGES", "MARKS"]) {
+        if has_any(&names, &["LEDGES", "HIGHLIGHTS"]) {
             names.push("COMPLETED");
         }
         found(names)
@@ -61,14 +61,14 @@ fn finding() -> Vec<Variant> {
 }
 
 fn found(mut names: Vec<&'static str>) -> Vec<&'static str> {
-    let marks = has(&names, "MARKS");
+    let highlights = has(&names, "HIGHLIGHTS");
     let reads_map = has_any(&names, &["FADING", "SIMPLIFIED_LINES"]);
     names.retain(|name| match *name {
-        "FADING" | "SIMPLIFIED_LINES" | "OBJECT_DEPTHS" => !marks,
-        "VISIBLE_RANGE" => reads_map && !marks,
+        "FADING" | "SIMPLIFIED_LINES" | "OBJECT_DEPTHS" => !highlights,
+        "VISIBLE_RANGE" => reads_map && !highlights,
         _ => true,
     });
-    if marks {
+    if highlights {
         names.push("OBJECT_STYLES");
     }
     let ids = ["OBJECT_EDGES", "OBJECT_STYLES", "SECTIONS", "OBJECT_DEPTHS"];
@@ -100,14 +100,14 @@ fn walking() -> Vec<Variant> {
 }
 
 fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
-    let [marks, jumps] = ["MARKS", "JUMPS"].map(|name| has(&names, name));
+    let [highlights, jumps] = ["HIGHLIGHTS", "JUMPS"].map(|name| has(&names, name));
     let lines = has_any(&names, &["SILHOUETTES", "CREASES", "OBJECT_EDGES"]);
     names.retain(|name| match *name {
         "BENDS" => false,
-        "BRIDGED" => lines && !marks,
-        "JUMPS" => !marks,
-        "VISIBLE_RANGE" => jumps && !marks,
-        _ if name.starts_with("MAP_FLAGS") => !marks,
+        "BRIDGED" => lines && !highlights,
+        "JUMPS" => !highlights,
+        "VISIBLE_RANGE" => jumps && !highlights,
+        _ if name.starts_with("MAP_FLAGS") => !highlights,
         _ => true,
     });
     if lines {
@@ -258,7 +258,7 @@ fn drawing() -> Vec<Variant> {
         pairs("lines/draw/strokes.wgsl", STROKES, with_ids),
         pairs("lines/find/resolve.wgsl", RESOLVED, |names| names),
         pairs(
-            "lines/record/marks.wgsl",
+            "lines/record/highlights.wgsl",
             &["OBJECT_STYLES", STORED],
             |names| names,
         ),

@@ -141,8 +141,8 @@ fn sections(
         return (false, false);
     };
     let at = along(view, pixel, v, |x, y| {
-        let [id, marks] = ids.pixels[(y * view.width + x) as usize];
-        (id, marks >> 8)
+        let [id, slot_section] = ids.pixels[(y * view.width + x) as usize];
+        (id, slot_section >> 8)
     });
     let [(id, here), (other, there)] = [at[2], at[3]];
     let silent = here == 255 || there == 255;

@@ -1,4 +1,4 @@
-//! Draws the lines of highlighted objects over the picture: see `marks.wgsl`.
+//! Draws the lines of highlighted objects over the picture: see `highlights.wgsl`.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -33,30 +33,30 @@ use crate::{
         request::{LinePassUniform, LineRequest},
         tiles::{TileList, tile_shader, vertices},
     },
-    objects::{MarkStyleBuffer, object_styles_entry},
+    objects::{HighlightStyleBuffer, object_styles_entry},
 };
 
-/// On a view in the render world: the entity that has the requests for the lines of its marked
+/// On a view in the render world: the entity that has the requests for the lines of its highlighted
 /// objects, and the pipeline that draws them.
 #[derive(Component, Clone, Copy, Debug)]
-pub(crate) struct ViewMarks {
+pub(crate) struct ViewHighlights {
     pub layer: Entity,
     pub pipeline: CachedRenderPipelineId,
-    pub key: MarkKey,
+    pub key: HighlightKey,
     /// The view is styled after anti-aliasing.
     pub late: bool,
 }
 
 /// Selects the variant of the pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MarkKey {
+pub(crate) struct HighlightKey {
     pub format: TextureFormat,
     pub space: CompositingSpace,
     /// Only the tiles with ink are drawn.
     pub tiled: bool,
 }
 
-impl MarkKey {
+impl HighlightKey {
     fn layout() -> BindGroupLayoutDescriptor {
         let stages = ShaderStages::FRAGMENT;
         let float = texture_2d(UNFILTERABLE);
@@ -65,7 +65,7 @@ impl MarkKey {
             float.build(4, stages),
             object_styles_entry(),
         ];
-        BindGroupLayoutDescriptor::new("comics_draw_marks", &entries)
+        BindGroupLayoutDescriptor::new("comics_draw_highlights", &entries)
     }
 
     fn defs(self) -> Vec<ShaderDefVal> {
@@ -80,36 +80,36 @@ impl MarkKey {
 }
 
 #[derive(Resource)]
-pub(crate) struct MarkPipeline {
+pub(crate) struct HighlightPipeline {
     fullscreen: FullscreenShader,
     tile: Handle<Shader>,
     shader: Handle<Shader>,
 }
 
-impl MarkPipeline {
+impl HighlightPipeline {
     pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
         Self {
             fullscreen: fullscreen.clone(),
             tile: tile_shader(assets),
-            shader: load_embedded_asset!(assets, "marks.wgsl"),
+            shader: load_embedded_asset!(assets, "highlights.wgsl"),
         }
     }
 }
 
-impl SpecializedRenderPipeline for MarkPipeline {
-    type Key = MarkKey;
+impl SpecializedRenderPipeline for HighlightPipeline {
+    type Key = HighlightKey;
 
-    fn specialize(&self, key: MarkKey) -> RenderPipelineDescriptor {
+    fn specialize(&self, key: HighlightKey) -> RenderPipelineDescriptor {
         let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
         RenderPipelineDescriptor {
-            label: Some("comics_draw_marks".into()),
-            layout: vec![MarkKey::layout()],
+            label: Some("comics_draw_highlights".into()),
+            layout: vec![HighlightKey::layout()],
             vertex,
             primitive,
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
-                entry_point: Some("draw_marks".into()),
+                entry_point: Some("draw_highlights".into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
                     blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -124,7 +124,7 @@ impl SpecializedRenderPipeline for MarkPipeline {
 /// What the pass binds; `None` if something is not ready in this frame.
 fn bindings<'a>(
     lines: &'a ViewLines,
-    styles: &'a MarkStyleBuffer,
+    styles: &'a HighlightStyleBuffer,
 ) -> Option<[BindGroupEntry<'a>; 3]> {
     let resources = [
         (1, lines.uniform.binding()?),
@@ -136,37 +136,43 @@ fn bindings<'a>(
 
 /// Draws the lines of the highlighted objects of the view over its picture. `LATE`: of the views
 /// that are styled after anti-aliasing, of the others otherwise.
-pub(crate) fn draw_marks<const LATE: bool>(
-    view: ViewQuery<(&ViewTarget, &ViewMarks)>,
+pub(crate) fn draw_highlights<const LATE: bool>(
+    view: ViewQuery<(&ViewTarget, &ViewHighlights)>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
-    styles: Res<MarkStyleBuffer>,
+    styles: Res<HighlightStyleBuffer>,
     binder: Binder,
     mut ctx: RenderContext,
 ) {
-    let (target, marks) = view.into_inner();
-    if marks.late != LATE {
+    let (target, highlights) = view.into_inner();
+    if highlights.late != LATE {
         return;
     }
-    let Ok((request, passes, lines)) = layers.get(marks.layer) else {
+    let Ok((request, passes, lines)) = layers.get(highlights.layer) else {
         return;
     };
-    let pipeline = binder.cache.get_render_pipeline(marks.pipeline);
+    let pipeline = binder.cache.get_render_pipeline(highlights.pipeline);
     let entries = bindings(lines, &styles);
     let (Some(pipeline), Some(entries)) = (pipeline, entries) else {
         return;
     };
-    if target.main_texture_format() != marks.key.format {
+    if target.main_texture_format() != highlights.key.format {
         return;
     }
-    let group = binder.group("comics_draw_marks", &MarkKey::layout(), &entries);
-    let tiles = if marks.key.tiled { lines.tiles() } else { None };
-    if marks.key.tiled != tiles.is_some() || marks.key.tiled != passes.are_tiles_complete() {
+    let group = binder.group("comics_draw_highlights", &HighlightKey::layout(), &entries);
+    let tiles = if highlights.key.tiled {
+        lines.tiles()
+    } else {
+        None
+    };
+    if highlights.key.tiled != tiles.is_some()
+        || highlights.key.tiled != passes.are_tiles_complete()
+    {
         return;
     }
     let mut pass = ctx
         .command_encoder()
         .begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_draw_marks"),
+            label: Some("comics_draw_highlights"),
             color_attachments: &[Some(attachment(target.main_texture_view(), LoadOp::Load))],
             ..Default::default()
         });

@@ -17,29 +17,32 @@ use bevy::{
 use super::{Plan, ViewPlan, lines::plain_request, scene::Scene};
 use crate::{
     depth::view::ViewUniform,
-    lines::{LinePasses, LinePipelines, LineRequest, MarkKey, MarkPipeline, Outlines, ViewMarks},
-    objects::{LayerRequest, Marks},
+    lines::{
+        HighlightKey, HighlightPipeline, LinePasses, LinePipelines, LineRequest, Outlines,
+        ViewHighlights,
+    },
+    objects::{HighlightedObjects, LayerRequest},
 };
 
 /// What the requests are made with.
 #[derive(SystemParam)]
-pub(crate) struct MarkPipelines<'w> {
-    marks: Res<'w, Marks>,
-    pipelines: ResMut<'w, SpecializedRenderPipelines<MarkPipeline>>,
-    pipeline: Res<'w, MarkPipeline>,
+pub(crate) struct HighlightPipelines<'w> {
+    highlights: Res<'w, HighlightedObjects>,
+    pipelines: ResMut<'w, SpecializedRenderPipelines<HighlightPipeline>>,
+    pipeline: Res<'w, HighlightPipeline>,
 }
 
 /// The requests for the lines of the highlighted objects of a view.
-pub(super) struct MarkRequests {
+pub(super) struct HighlightRequests {
     layer: LayerRequest,
     lines: (LineRequest, LinePasses),
     pipeline: CachedRenderPipelineId,
-    key: MarkKey,
+    key: HighlightKey,
     late: bool,
 }
 
-impl MarkPipelines<'_> {
-    /// The requests, if some object is marked and the view has a depth prepass.
+impl HighlightPipelines<'_> {
+    /// The requests, if some object is highlighted and the view has a depth prepass.
     pub fn requests(
         &mut self,
         lines: &mut LinePipelines,
@@ -47,17 +50,17 @@ impl MarkPipelines<'_> {
         (plan, view): (&Plan, &ViewPlan),
         (scene, uniform): (&Scene, ViewUniform),
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
-    ) -> Option<MarkRequests> {
-        let (size, samples) = scene.depth.filter(|_| plan.marks)?;
-        let widest = self.marks.styles.max_width();
+    ) -> Option<HighlightRequests> {
+        let (size, samples) = scene.depth.filter(|_| plan.highlights)?;
+        let widest = self.highlights.styles.max_width();
         let request = request(view, (scene, uniform), widest)?;
         let passes = lines.get(cache, &request);
-        let key = MarkKey {
+        let key = HighlightKey {
             format: extracted.target_format,
             space: camera.compositing_space.unwrap_or(CompositingSpace::Linear),
             tiled: passes.are_tiles_complete(),
         };
-        Some(MarkRequests {
+        Some(HighlightRequests {
             layer: LayerRequest {
                 camera: view.camera,
                 size,
@@ -78,17 +81,17 @@ fn request(
     (scene, uniform): (&Scene, ViewUniform),
     widest: f32,
 ) -> Option<LineRequest> {
-    let settings = Outlines::MARKS;
+    let settings = Outlines::HIGHLIGHTS;
     Some(LineRequest {
         reach: settings.reach(view.scale_factor, (widest, false), None),
         ids: true,
-        marks: true,
+        highlights: true,
         object_styles: true,
         ..plain_request(view, settings, scene, uniform)?
     })
 }
 
-impl MarkRequests {
+impl HighlightRequests {
     pub fn passes(&self) -> &LinePasses {
         &self.lines.1
     }
@@ -101,20 +104,22 @@ impl MarkRequests {
     pub fn put(self, view: Entity, known: Option<Entity>, commands: &mut Commands) {
         let layer = known.unwrap_or_else(|| commands.spawn(ChildOf(view)).id());
         commands.entity(layer).insert(self.lines);
-        let marks = ViewMarks {
+        let highlights = ViewHighlights {
             layer,
             pipeline: self.pipeline,
             key: self.key,
             late: self.late,
         };
-        commands.entity(view).insert((self.layer, marks));
+        commands.entity(view).insert((self.layer, highlights));
     }
 }
 
 /// Removes the requests for the lines of highlighted objects.
-pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+pub(super) fn remove_highlights(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
     if let Some(layer) = layer {
         commands.entity(layer).despawn();
     }
-    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
+    commands
+        .entity(view)
+        .remove::<(LayerRequest, ViewHighlights)>();
 }

@@ -147,17 +147,17 @@ fn children_share_the_outline_of_their_parent() {
     assert_eq!(small.errors(), 0);
 }
 
-/// A mark has a layer of its own: id, style and sections of its object stay in the texture of ids.
+/// A highlight has a layer of its own: id, style and sections of its object stay in the texture of ids.
 #[test]
 fn a_selected_object_keeps_its_id_and_its_style() {
     let (mut small, square, _) = scene();
-    for mark in [true, false] {
+    for is_highlighted in [true, false] {
         small.insert(Outlines::default());
         small
             .on(square)
             .insert((NoOutlines::default(), NoStyle::default()));
         let before = small.settle().object_ids().expect("drawn");
-        if mark {
+        if is_highlighted {
             small.on(square).insert(green(1.0));
         } else {
             small.on(square).insert(x_ray());

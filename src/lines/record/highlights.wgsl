@@ -20,7 +20,7 @@ fn to_stored(color: vec3<f32>) -> vec3<f32> {
 }
 
 @fragment
-fn draw_marks(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn draw_highlights(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let viewport = line_pass.seen.viewport;
     let pixel = clamp(vec2<i32>(position.xy) - viewport.xy, vec2(0), viewport.zw - 1);
     let texel = textureLoad(ink_texture, pixel, 0);

@@ -142,22 +142,22 @@ impl XRayOutline {
 
 /// The objects that are outlined by themselves. Both worlds have a copy.
 #[derive(Resource, Default)]
-pub(crate) struct Marks {
+pub(crate) struct HighlightedObjects {
     /// The lines of these objects.
     pub styles: ObjectStyles,
-    /// The entity whose component marks a mesh.
+    /// The entity whose component highlights a mesh.
     roots: Shared<Entity>,
 }
 
-impl Marks {
-    /// The entity whose component marks a mesh, and the slot of its lines.
+impl HighlightedObjects {
+    /// The entity whose component highlights a mesh, and the slot of its lines.
     pub fn of(&self, mesh: Entity) -> Option<(Entity, u8)> {
         let slot = self.styles.slots.get(mesh)?;
         Some((*self.roots.get(mesh)?, *slot))
     }
 }
 
-impl Follow for Marks {
+impl Follow for HighlightedObjects {
     fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
         self.styles.follow(&main.styles, changed);
         self.roots.follow(&main.roots, changed);
@@ -165,15 +165,15 @@ impl Follow for Marks {
 }
 
 /// Either component; `SelectionOutline` counts if an entity has both.
-struct Marked;
+struct Highlighted;
 
-type MarkParts<'w> = (Option<&'w SelectionOutline>, Option<&'w XRayOutline>);
+type HighlightParts<'w> = (Option<&'w SelectionOutline>, Option<&'w XRayOutline>);
 
-impl Heritage for Marked {
+impl Heritage for Highlighted {
     type Own = AnyOf<(&'static SelectionOutline, &'static XRayOutline)>;
     type Changed = Or<(Changed<SelectionOutline>, Changed<XRayOutline>)>;
 
-    fn passes_on((selected, hidden): &MarkParts) -> bool {
+    fn passes_on((selected, hidden): &HighlightParts) -> bool {
         match (selected, hidden) {
             (Some(selected), _) => selected.inherit,
             (None, hidden) => hidden.is_some_and(|hidden| hidden.inherit),
@@ -182,39 +182,39 @@ impl Heritage for Marked {
 }
 
 /// The lines of an object with one of the components; `None` if they are not seen.
-fn lines((selected, hidden): MarkParts) -> Option<ObjectStyleUniform> {
+fn lines((selected, hidden): HighlightParts) -> Option<ObjectStyleUniform> {
     let hidden = || hidden.map(|hidden| hidden.uniform());
     let lines = selected.map(|selected| selected.uniform()).or_else(hidden);
     lines.filter(|lines| lines.opacity > 0.0)
 }
 
-fn assign_marks(
-    mut marked: Inherited<Marked>,
-    (mut marks, mut styles): (ResMut<Marks>, ResMut<ObjectStyles>),
+fn assign_highlights(
+    mut highlighted: Inherited<Highlighted>,
+    (mut highlights, mut styles): (ResMut<HighlightedObjects>, ResMut<ObjectStyles>),
 ) {
-    let changed = marked.update();
+    let changed = highlighted.update();
     if changed.is_empty() {
         return;
     }
-    let marks = &mut *marks;
-    marks.roots.begin();
+    let highlights = &mut *highlights;
+    highlights.roots.begin();
     let changed = changed.into_iter().map(|mesh| {
-        let (root, lines) = marked
+        let (root, lines) = highlighted
             .of(mesh)
             .map(|(root, parts)| (root, lines(parts)))
             .unzip();
-        marks.roots.set(mesh, root);
+        highlights.roots.set(mesh, root);
         (mesh, lines.flatten())
     });
-    marks.styles.assign(changed);
-    styles.marks = marks.styles.any();
+    highlights.styles.assign(changed);
+    styles.highlights = highlights.styles.any();
 }
 
 pub(super) fn build(app: &mut App) {
     register::<SelectionOutline>(app);
     register::<XRayOutline>(app);
-    app.init_resource::<Marks>().add_systems(
+    app.init_resource::<HighlightedObjects>().add_systems(
         PostUpdate,
-        assign_marks.after(super::components::assign_object_styles),
+        assign_highlights.after(super::components::assign_object_styles),
     );
 }
