@@ -86,7 +86,7 @@ impl Inputs<'_> {
 /// them is missing in this frame.
 pub(super) fn entries<'a>(
     key: &StylizeKey,
-    ((surfaces, drawn), range, lines, (ids, places)): ViewInputs<'a>,
+    ((surfaces, drawn), range, lines, (ids, depths)): ViewInputs<'a>,
     object_styles: &'a ObjectStyleBuffer,
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
@@ -123,11 +123,11 @@ pub(super) fn entries<'a>(
         let ids = ids.ok_or(not_ready)?;
         entries.push(entry(8, (&ids.view).into_binding()));
     }
-    if key.places() {
-        let places = places.ok_or(not_ready)?;
+    if key.object_depths() {
+        let depths = depths.ok_or(not_ready)?;
         entries.push(entry(
             OBJECT_DEPTHS_BINDING,
-            places.table.as_entire_binding(),
+            depths.table.as_entire_binding(),
         ));
     }
     if key.reads_drawn_depth() {

@@ -308,8 +308,8 @@ impl StylizeKey {
         self.visible_range || self.borders() || self.middle()
     }
 
-    /// Whether the places of objects in the depth map are read.
-    pub fn places(&self) -> bool {
+    /// Whether the depths of objects in the depth map are read.
+    pub fn object_depths(&self) -> bool {
         self.needs.contains(Needs::OBJECT_DEPTHS)
     }
 
@@ -381,7 +381,7 @@ impl StylizeKey {
             (self.layer_ink && self.area != DrawnArea::Base, "LAYER_INK"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
-            (self.places(), "OBJECT_DEPTHS"),
+            (self.object_depths(), "OBJECT_DEPTHS"),
             (needs.contains(Needs::WORLD_ORIGIN), "WORLD_ORIGIN"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
@@ -433,7 +433,7 @@ impl StylizeKey {
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),
-            (self.places(), object_depths_entry()),
+            (self.object_depths(), object_depths_entry()),
             (self.continued, picture.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
             (self.blue_noise(), packed.clone().build(11, fragment)),

@@ -1,4 +1,4 @@
-//! The request for the places of objects in the depth map.
+//! The request for the depths of objects in the depth map.
 
 use crate::effect::{EffectContext, Needs};
 use bevy::{math::Vec2, render::view::ExtractedView};
@@ -19,10 +19,10 @@ pub(super) fn object_depths(
     let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
     wanted.then(|| ObjectDepthRequest {
         eye: ObjectEye {
-            place: context.eye,
+            position: context.eye,
             orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
             forward: *extracted.world_from_view.forward(),
-            forgets: 0,
+            resets: 0,
             axis: context.depth_axis,
             spare: Vec2::ZERO,
             view: uniform,

@@ -47,7 +47,7 @@ pub(super) struct Requests {
     range: Option<(RangeRequest, RangePasses)>,
     lines: Option<(LineRequest, LinePasses)>,
     ids: Option<IdRequest>,
-    places: Option<ObjectDepthRequest>,
+    object_depths: Option<ObjectDepthRequest>,
     #[cfg(feature = "objects")]
     highlights: Option<HighlightRequests>,
     fused: Option<FusedRequest>,
@@ -75,7 +75,7 @@ impl Services<'_> {
         let uniform = view_uniform(view, plan, scene);
         let context = effect_context(view, plan, scene.viewport, (extracted, camera));
         let jumps = map_jumps(plan, scene, &context);
-        let places = object_depths((plan, view), &context, uniform, extracted);
+        let object_depths = object_depths((plan, view), &context, uniform, extracted);
         let lines = line_request(view, (plan, &context), scene, (uniform, jumps)).map(|request| {
             let passes = self.lines.get(cache, &request);
             (request, passes)
@@ -114,7 +114,7 @@ impl Services<'_> {
             range,
             lines,
             ids,
-            places,
+            object_depths,
             #[cfg(feature = "objects")]
             highlights,
             fused,
@@ -322,8 +322,8 @@ impl Requests {
             Some(ids) => view.insert(ids),
             None => view.remove::<IdRequest>(),
         };
-        match self.places {
-            Some(places) => view.insert(places),
+        match self.object_depths {
+            Some(object_depths) => view.insert(object_depths),
             None => view.remove::<ObjectDepthRequest>(),
         };
         match self.fused {

@@ -1,4 +1,4 @@
-//! The place of every object in the depth map, for effects that treat objects as a whole.
+//! The depth of every object in the depth map, for effects that treat objects as a whole.
 
 use std::num::NonZero;
 
@@ -42,7 +42,7 @@ use super::{
     groups::ObjectGroups,
     object_ids::ObjectIds,
     shared::Shared,
-    simplification::{BY_DISTANCE, Dials},
+    simplification::{BY_DISTANCE, Simplifications},
 };
 use crate::bind_groups::Binder;
 use crate::{
@@ -51,9 +51,9 @@ use crate::{
     schedule::{ComicsSystems, PrepareComics},
 };
 
-/// Bytes of the place of an id, and the smallest number of them in a table.
-const PLACE: u64 = 16;
-const LEAST_PLACES: u64 = 1024;
+/// Bytes of the depth of an id, and the smallest number of them in a table.
+const ENTRY: u64 = 16;
+const LEAST_ENTRIES: u64 = 1024;
 
 /// A box in world space, along its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,17 +91,17 @@ const KNOWN: u32 = 0;
 /// The object has got its id in this frame.
 const FRESH: u32 = 1;
 /// Several objects have the id, or the object has no box.
-const NOWHERE: u32 = 2;
+const UNKNOWN: u32 = 2;
 
-/// The boxes of all objects, while some view asks for their places.
+/// The boxes of all objects, while some view asks for their depths.
 #[derive(Resource, Default)]
 pub(super) struct ObjectBounds {
     /// The object of each mesh, and the mesh's box.
     meshes: EntityHashMap<(Entity, Bounds)>,
     /// The meshes of each object, and the box around them.
     objects: EntityHashMap<(Vec<Entity>, Bounds)>,
-    /// The dials of the meshes that have a simplification of their own.
-    dials: Shared<Vec2>,
+    /// The simplifications of the meshes that have one of their own.
+    simplifications: Shared<Vec2>,
     /// Whether some view asked in the last frame.
     asked: bool,
     /// The objects that the table has yet to follow.
@@ -153,14 +153,16 @@ impl ObjectBounds {
     /// The entry of an object in the table.
     fn entry(&self, object: Entity, id: u16, is_new: bool) -> [u32; 12] {
         let Some((meshes, found)) = self.objects.get(&object) else {
-            return nowhere(id);
+            return unknown(id);
         };
         let [x, y, z] = found.low.midpoint(found.high).to_array().map(f32::to_bits);
         let half = 0.5 * (found.high - found.low);
         let [across, down, deep] = half.to_array().map(f32::to_bits);
         let state = if is_new { FRESH } else { KNOWN };
-        let dial = meshes.iter().find_map(|mesh| self.dials.get(*mesh));
-        let [factor, offset] = dial.unwrap_or(&BY_DISTANCE).to_array().map(f32::to_bits);
+        let own = meshes
+            .iter()
+            .find_map(|mesh| self.simplifications.get(*mesh));
+        let [factor, offset] = own.unwrap_or(&BY_DISTANCE).to_array().map(f32::to_bits);
         let id = u32::from(id);
         [x, y, z, id, across, down, deep, state, factor, offset, 0, 0]
     }
@@ -178,7 +180,7 @@ impl ObjectBounds {
                 table.set(usize::from(id), self.entry(object, id, is_new));
             }
             for id in ids.shared() {
-                table.set(usize::from(id), nowhere(id));
+                table.set(usize::from(id), unknown(id));
             }
         } else {
             for object in touched {
@@ -202,14 +204,14 @@ impl ObjectBounds {
 }
 
 /// The entry of an id that several objects have, or of an object without a box.
-fn nowhere(id: u16) -> [u32; 12] {
+fn unknown(id: u16) -> [u32; 12] {
     let mut entry = [0; 12];
     entry[3] = u32::from(id);
-    entry[7] = NOWHERE;
+    entry[7] = UNKNOWN;
     entry
 }
 
-/// Meshes with their boxes and places.
+/// Meshes with their boxes and transforms.
 type Boxed = (Entity, &'static Aabb, &'static GlobalTransform);
 
 type OtherBox = (
@@ -226,7 +228,7 @@ fn extract_bounds(
         Extract<RemovedComponents<Mesh3d>>,
         Extract<RemovedComponents<Aabb>>,
     ),
-    dials: Extract<Res<Dials>>,
+    simplifications: Extract<Res<Simplifications>>,
     mut bounds: ResMut<ObjectBounds>,
 ) {
     let bounds = &mut *bounds;
@@ -260,41 +262,43 @@ fn extract_bounds(
             bounds.set(mesh.0, found(mesh));
         }
     }
-    let mut dialled = MainEntityHashSet::default();
-    bounds.dials.follow(&dials.0, &mut dialled);
-    for mesh in dialled {
+    let mut simplified = MainEntityHashSet::default();
+    bounds
+        .simplifications
+        .follow(&simplifications.0, &mut simplified);
+    for mesh in simplified {
         let object = bounds.meshes.get(&mesh.id()).map(|(object, _)| *object);
         bounds.touched.extend(object);
     }
     bounds.unite();
 }
 
-/// On a view whose effects treat objects as a whole: the table of their places.
+/// On a view whose effects treat objects as a whole: the pass that finds their depths.
 #[derive(Component)]
-struct ViewPlaces {
+struct ObjectDepthPass {
     uniform: UniformBuffer<ObjectEye>,
     pipeline: CachedComputePipelineId,
     mapping: DepthMapping,
     cuts: u32,
 }
 
-impl ViewPlaces {
+impl ObjectDepthPass {
     fn reads_range(&self) -> bool {
         self.mapping.follows_visible_range()
     }
 
-    /// Whether its places say nothing about those of this request.
+    /// Whether its depths say nothing about those of this request.
     fn is_past(&self, request: &ObjectDepthRequest) -> bool {
         (self.mapping, self.cuts) != (request.mapping, request.cuts)
     }
 }
 
 #[derive(Resource)]
-struct PlacePipeline {
+struct ObjectDepthPipeline {
     shader: Handle<Shader>,
 }
 
-impl PlacePipeline {
+impl ObjectDepthPipeline {
     fn layout(visible_range: bool) -> BindGroupLayoutDescriptor {
         let compute = ShaderStages::COMPUTE;
         let mut entries = BindGroupLayoutEntries::sequential(
@@ -313,7 +317,7 @@ impl PlacePipeline {
     }
 }
 
-impl SpecializedComputePipeline for PlacePipeline {
+impl SpecializedComputePipeline for ObjectDepthPipeline {
     /// Whether the depth map spans the visible range.
     type Key = bool;
 
@@ -327,59 +331,59 @@ impl SpecializedComputePipeline for PlacePipeline {
             } else {
                 Vec::new()
             },
-            entry_point: Some("place".into()),
+            entry_point: Some("object_depth".into()),
             ..Default::default()
         }
     }
 }
 
-/// The views with places, and those that may no longer have them.
-type Placed<'w, 's> = (
+/// The views with depths of objects, and those that may no longer have them.
+type WithDepths<'w, 's> = (
     Query<
         'w,
         's,
         (
             Entity,
             &'static ObjectDepthRequest,
-            Option<&'static mut ViewPlaces>,
+            Option<&'static mut ObjectDepthPass>,
             Option<&'static ObjectDepths>,
         ),
     >,
     Query<'w, 's, Entity, (With<ObjectDepths>, Without<ObjectDepthRequest>)>,
 );
 
-fn prepare_places(
+fn prepare_object_depths(
     mut commands: Commands,
-    (mut views, stale): Placed,
+    (mut views, stale): WithDepths,
     (mut bounds, ids): (ResMut<ObjectBounds>, Res<ObjectIds>),
-    (pipeline, cache): (Res<PlacePipeline>, Res<PipelineCache>),
-    mut pipelines: ResMut<SpecializedComputePipelines<PlacePipeline>>,
+    (pipeline, cache): (Res<ObjectDepthPipeline>, Res<PipelineCache>),
+    mut pipelines: ResMut<SpecializedComputePipelines<ObjectDepthPipeline>>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for view in &stale {
-        commands.entity(view).remove::<(ObjectDepths, ViewPlaces)>();
+        commands
+            .entity(view)
+            .remove::<(ObjectDepths, ObjectDepthPass)>();
     }
     if views.is_empty() {
         return;
     }
     bounds.fill(&ids);
     bounds.table.write(&device, &queue);
-    let places = (ids.last() as u64 + 1).next_power_of_two();
-    let size = PLACE * places.max(LEAST_PLACES);
+    let entries = (ids.last() as u64 + 1).next_power_of_two();
+    let size = ENTRY * entries.max(LEAST_ENTRIES);
     for (entity, request, mut known, table) in &mut views {
-        let forgets = known.as_ref().is_none_or(|places| places.is_past(request));
-        let known = known
-            .as_mut()
-            .map(|places| std::mem::take(&mut places.uniform));
+        let resets = known.as_ref().is_none_or(|pass| pass.is_past(request));
+        let known = known.as_mut().map(|pass| std::mem::take(&mut pass.uniform));
         let mut uniform = known.unwrap_or_default();
         uniform.set(ObjectEye {
-            forgets: u32::from(forgets),
+            resets: u32::from(resets),
             ..request.eye
         });
         uniform.write_buffer(&device, &queue);
         let reads_range = request.mapping.follows_visible_range();
         let mut view = commands.entity(entity);
-        view.insert(ViewPlaces {
+        view.insert(ObjectDepthPass {
             uniform,
             pipeline: pipelines.specialize(&cache, &pipeline, reads_range),
             mapping: request.mapping,
@@ -393,21 +397,21 @@ fn prepare_places(
     }
 }
 
-/// Records the pass that finds the places of objects. Where it cannot run, they are unknown: those
-/// of the last frame may be places in another depth map.
-fn place_objects(
-    view: ViewQuery<(&ViewPlaces, &ObjectDepths, Option<&ViewDepthRange>)>,
+/// Records the pass that finds the depths of objects. Where it cannot run, they are unknown: those
+/// of the last frame may be depths in another depth map.
+fn find_object_depths(
+    view: ViewQuery<(&ObjectDepthPass, &ObjectDepths, Option<&ViewDepthRange>)>,
     bounds: Res<ObjectBounds>,
     binder: Binder,
     mut ctx: RenderContext,
 ) {
-    let (places, table, range) = view.into_inner();
+    let (pass, table, range) = view.into_inner();
     let keys = range.and_then(ViewDepthRange::drawn);
     let (Some(pipeline), Some(uniform), Some(objects), true) = (
-        binder.cache.get_compute_pipeline(places.pipeline),
-        places.uniform.binding(),
+        binder.cache.get_compute_pipeline(pass.pipeline),
+        pass.uniform.binding(),
         bounds.binding(),
-        keys.is_some() || !places.reads_range(),
+        keys.is_some() || !pass.reads_range(),
     ) else {
         ctx.command_encoder().clear_buffer(&table.table, 0, None);
         return;
@@ -417,14 +421,14 @@ fn place_objects(
         entry(1, objects),
         entry(2, table.table.as_entire_binding()),
     ];
-    if let Some(keys) = keys.filter(|_| places.reads_range()) {
+    if let Some(keys) = keys.filter(|_| pass.reads_range()) {
         entries.push(entry(3, keys.as_entire_binding()));
     }
-    let layout = PlacePipeline::layout(places.reads_range());
+    let layout = ObjectDepthPipeline::layout(pass.reads_range());
     let group = binder.group("comics_object_depths", &layout, &entries);
     let encoder = ctx.command_encoder();
-    let mut pass = compute_pass(encoder, "comics_object_depths", (pipeline, &group), &[]);
-    pass.dispatch_workgroups((bounds.table.len() as u32).div_ceil(64), 1, 1);
+    let mut compute = compute_pass(encoder, "comics_object_depths", (pipeline, &group), &[]);
+    compute.dispatch_workgroups((bounds.table.len() as u32).div_ceil(64), 1, 1);
 }
 
 fn init_pipeline(
@@ -434,9 +438,11 @@ fn init_pipeline(
 ) {
     // This runs again after a lost device, whose buffers are no longer valid.
     for view in &views {
-        commands.entity(view).remove::<(ObjectDepths, ViewPlaces)>();
+        commands
+            .entity(view)
+            .remove::<(ObjectDepths, ObjectDepthPass)>();
     }
-    commands.insert_resource(PlacePipeline {
+    commands.insert_resource(ObjectDepthPipeline {
         shader: load_embedded_asset!(assets.as_ref(), "depths.wgsl"),
     });
 }
@@ -445,13 +451,16 @@ fn init_pipeline(
 pub(super) fn build(render_app: &mut SubApp) {
     render_app
         .init_gpu_resource::<ObjectBounds>()
-        .init_gpu_resource::<SpecializedComputePipelines<PlacePipeline>>()
+        .init_gpu_resource::<SpecializedComputePipelines<ObjectDepthPipeline>>()
         .add_systems(RenderStartup, init_pipeline)
         .add_systems(ExtractSchedule, extract_bounds.after(NoteChanges))
-        .add_systems(Render, prepare_places.in_set(PrepareComics::Services))
+        .add_systems(
+            Render,
+            prepare_object_depths.in_set(PrepareComics::Services),
+        )
         .add_systems(
             Core3d,
-            place_objects
+            find_object_depths
                 .after(ComicsSystems::DepthRange)
                 .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::objects::depths
 
-// The place of every object in the depth map: that of its centre, for all of its pixels. One
+// The depth of every object in the depth map: that of its center, for all of its pixels. One
 // invocation for each object, once per view and frame.
 
 #import bevy_comics::depth::map::{DepthFrame, depth_map}
@@ -11,30 +11,30 @@
 const HYSTERESIS: f32 = 0.03;
 const HYSTERESIS_FRACTION: f32 = 0.15;
 
-// Objects that extend over less of D than this are one place; from the second number on, every
+// Objects that extend over less of D than this have one depth; from the second number on, every
 // pixel is its own.
 const WHOLE: f32 = 0.25;
 const DIVIDED: f32 = 0.4;
 
 // A box in world space, along its axes.
 struct Bounds {
-    centre: vec3<f32>,
+    center: vec3<f32>,
     id: u32,
     half: vec3<f32>,
-    // 0: it had the id before; 1: the id is new; 2: there is no place, because several objects have
+    // 0: it had the id before; 1: the id is new; 2: there is no depth, because several objects have
     // the id, or the object has no box.
     state: u32,
-    // Its simplification: a factor of that by distance, and what is added.
-    dial: vec2<f32>,
+    // A factor of the simplification by distance, and what is added.
+    simplification: vec2<f32>,
     unused_pair: vec2<f32>,
 }
 
 struct Eye {
-    place: vec3<f32>,
+    position: vec3<f32>,
     orthographic: u32,
     forward: vec3<f32>,
-    // 1: places of the frames before are forgotten.
-    forgets: u32,
+    // 1: depths of the frames before are not used.
+    resets: u32,
     // Distance along the view's axis from raw depth d: x / (d + y), under an orthographic
     // projection x + y * d.
     axis: vec2<f32>,
@@ -44,7 +44,7 @@ struct Eye {
 
 @group(0) @binding(0) var<uniform> eye: Eye;
 @group(0) @binding(1) var<storage, read> objects: array<Bounds>;
-// By id: D of the centre, plus 1; how much of each pixel follows it; and the dial of its
+// By id: D of the center, plus 1; how much of each pixel follows it; and its
 // simplification. 0: unknown.
 @group(0) @binding(2) var<storage, read_write> depths: array<vec4<f32>>;
 
@@ -59,23 +59,23 @@ fn raw_depth_at(axis: vec2<f32>, orthographic: bool, distance: f32) -> f32 {
     return clamp(axis.x / distance - axis.y, 0.0, 1.0);
 }
 
-// D of the centre of an object, and how much its pixels follow it. `distance`: of the centre,
+// D of the center of an object, and how much its pixels follow it. `distance`: of the center,
 // `reach`: of its nearest and farthest point from there, along the view's axis.
-fn object_place(frame: DepthFrame, axis: vec2<f32>, orthographic: bool, distance: f32, reach: f32) -> vec2<f32> {
+fn depth_of_object(frame: DepthFrame, axis: vec2<f32>, orthographic: bool, distance: f32, reach: f32) -> vec2<f32> {
     let near = depth_map(frame, raw_depth_at(axis, orthographic, distance - reach)).x;
-    let centre = depth_map(frame, raw_depth_at(axis, orthographic, distance)).x;
+    let center = depth_map(frame, raw_depth_at(axis, orthographic, distance)).x;
     let far = depth_map(frame, raw_depth_at(axis, orthographic, distance + reach)).x;
-    return vec2(centre, 1.0 - smoothstep(WHOLE, DIVIDED, far - near));
+    return vec2(center, 1.0 - smoothstep(WHOLE, DIVIDED, far - near));
 }
 
-// The place that is kept of one that moves.
-fn kept_place(before: f32, now: f32) -> f32 {
+// The depth that is kept of an object that moves.
+fn kept_depth(before: f32, now: f32) -> f32 {
     let ignored = min(HYSTERESIS, HYSTERESIS_FRACTION * now);
     return clamp(before, now - ignored, now + ignored);
 }
 
 @compute @workgroup_size(64)
-fn place(@builtin(global_invocation_id) id: vec3<u32>) {
+fn object_depth(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= arrayLength(&objects) {
         return;
     }
@@ -85,16 +85,16 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
         // No object: the table stays 0 for pixels that show none.
         return;
     }
-    let distance = dot(eye.forward, bounds.centre - eye.place);
+    let distance = dot(eye.forward, bounds.center - eye.position);
     let reach = dot(abs(eye.forward), bounds.half);
-    let found = object_place(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);
+    let found = depth_of_object(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);
     let at = min(bounds.id, arrayLength(&depths) - 1u);
     let before = depths[at].x;
     if bounds.state == 2u {
         depths[at] = vec4(0.0);
         return;
     }
-    let is_new = before == 0.0 || bounds.state == 1u || eye.forgets != 0u;
-    let d = select(kept_place(before - 1.0, found.x), found.x, is_new);
-    depths[at] = vec4(d + 1.0, found.y, bounds.dial);
+    let is_new = before == 0.0 || bounds.state == 1u || eye.resets != 0u;
+    let d = select(kept_depth(before - 1.0, found.x), found.x, is_new);
+    depths[at] = vec4(d + 1.0, found.y, bounds.simplification);
 }

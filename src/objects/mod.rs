@@ -249,14 +249,14 @@ impl Plugin for ObjectsPlugin {
         #[cfg(feature = "objects")]
         {
             app.init_resource::<line_widths::WideMeshes>()
-                .init_resource::<simplification::Dials>()
+                .init_resource::<simplification::Simplifications>()
                 .add_systems(
                     bevy::app::PostUpdate,
                     (
                         levels::find_levels,
                         components::assign_object_styles,
                         line_widths::find_wide_meshes,
-                        simplification::assign_dials,
+                        simplification::assign_simplifications,
                     )
                         .chain()
                         .after(bevy::transform::TransformSystems::Propagate),

@@ -14,17 +14,17 @@ use crate::depth::{DepthMapping, view::ViewUniform};
 /// `Eye` of `depths.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct ObjectEye {
-    pub place: Vec3,
+    pub position: Vec3,
     pub orthographic: u32,
     pub forward: Vec3,
-    /// 1: places of the frames before are forgotten.
-    pub forgets: u32,
+    /// 1: depths of the frames before are not used.
+    pub resets: u32,
     pub axis: Vec2,
     pub spare: Vec2,
     pub view: ViewUniform,
 }
 
-/// On a view in the render world: a request for the places of objects in the depth map, written in
+/// On a view in the render world: a request for the depths of objects in the depth map, written in
 /// every frame by [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
 #[derive(Component, Clone, Copy, Debug)]
 #[cfg_attr(
@@ -38,7 +38,7 @@ pub(crate) struct ObjectDepthRequest {
     pub cuts: u32,
 }
 
-/// On a view whose effects treat objects as a whole: the places of all objects in the depth map,
+/// On a view whose effects treat objects as a whole: the depths of all objects in the depth map,
 /// by id. See `depths.wgsl`.
 #[derive(Component)]
 pub(crate) struct ObjectDepths {

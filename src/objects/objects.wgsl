@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::objects
 
 // Object ids and outline styles of objects: the only module that declares bindings 6
-// (styles), 8 (ids), 9 (factors of the width of lines) and 13 (places in the depth map).
+// (styles), 8 (ids), 9 (factors of the width of lines) and 32 (depths of objects).
 
 #import bevy_comics::depth::view::depth_pixel
 #ifdef WIDTH_MAP
@@ -89,14 +89,14 @@ fn style_of(slot: u32) -> ObjectStyle {
 // Where the object with this id is in the depth map: D of its centre, and how much its pixels
 // follow it, 0 to 1: 0 for what extends far in depth, and for unknown objects.
 fn object_depth(id: u32) -> vec2<f32> {
-    let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
-    return vec2(place.x - 1.0, select(0.0, place.y, place.x > 0.0));
+    let entry = object_depths[min(id, arrayLength(&object_depths) - 1u)];
+    return vec2(entry.x - 1.0, select(0.0, entry.y, entry.x > 0.0));
 }
 
 // The simplification of the object with this id: a factor of that by distance, and what is added.
-fn object_dial(id: u32) -> vec2<f32> {
-    let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
-    return select(vec2(1.0, 0.0), place.zw, place.x > 0.0);
+fn object_simplification(id: u32) -> vec2<f32> {
+    let entry = object_depths[min(id, arrayLength(&object_depths) - 1u)];
+    return select(vec2(1.0, 0.0), entry.zw, entry.x > 0.0);
 }
 
 // D at a sample of a pixel of the target, and where that shows an object which is treated as a whole,

@@ -53,7 +53,7 @@ impl ObjectSimplification {
     }
 
     /// The factor of the simplification by distance, and what is added to it.
-    fn dial(self) -> Vec2 {
+    fn factor_and_offset(self) -> Vec2 {
         let s = self.sanitized();
         match s.level {
             Some(level) => Vec2::new(0.0, level + s.offset),
@@ -64,18 +64,18 @@ impl ObjectSimplification {
 
 impl_sanitized!(ObjectSimplification);
 
-/// The dial of an object without an [`ObjectSimplification`].
+/// The factor and offset of an object without an [`ObjectSimplification`].
 pub(super) const BY_DISTANCE: Vec2 = Vec2::X;
 
-/// The dials of the meshes that have one of their own.
-pub(super) type Dials = Values<ObjectSimplification, Vec2>;
+/// The factor and offset of each mesh that has a simplification of its own.
+pub(super) type Simplifications = Values<ObjectSimplification, Vec2>;
 
-/// Keeps [`Dials`] up to date.
-pub(super) fn assign_dials(
+/// Keeps [`Simplifications`] up to date.
+pub(super) fn assign_simplifications(
     mut simplified: Inherited<ObjectSimplification>,
-    mut dials: ResMut<Dials>,
+    mut simplifications: ResMut<Simplifications>,
 ) {
-    dials.update(&mut simplified, |simplified| simplified.dial());
+    simplifications.update(&mut simplified, |own| own.factor_and_offset());
 }
 
 #[cfg(test)]
@@ -83,16 +83,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dials_are_within_their_ranges() {
+    fn factors_and_offsets_are_within_their_ranges() {
         let of = |level, offset| {
             ObjectSimplification {
                 level,
                 offset,
                 inherit: false,
             }
-            .dial()
+            .factor_and_offset()
         };
-        assert_eq!(ObjectSimplification::default().dial(), BY_DISTANCE);
+        assert_eq!(
+            ObjectSimplification::default().factor_and_offset(),
+            BY_DISTANCE
+        );
         assert_eq!(of(None, 0.25), Vec2::new(1.0, 0.25));
         assert_eq!(of(Some(0.5), -0.25), Vec2::new(0.0, 0.25));
         assert_eq!(of(Some(7.0), -9.0), Vec2::new(0.0, 0.0));

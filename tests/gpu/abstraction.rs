@@ -1,4 +1,4 @@
-//! The dial of abstraction in whole views.
+//! Abstraction in whole views.
 
 use bevy_comics::objects::ObjectSimplification;
 use bevy_comics_testkit::work::along_cracks;
@@ -334,7 +334,7 @@ fn lightness(code: u8) -> f32 {
 }
 
 /// Truth: while the camera moves, tones split and never pop. A wall with a gradient keeps its size
-/// on the screen, so that only the dial changes it.
+/// on the screen, so that only the abstraction changes it.
 #[test]
 fn tones_split_without_popping() {
     const STEPS: usize = 150;

@@ -338,14 +338,14 @@ fn abstraction_draws_strokes_farther_apart() {
     let mut small = empty();
     flat(&mut small, 0.3, tilted(20.0, 12.0));
     for (level, factor) in [(0.0, 1.0), (0.5, std::f32::consts::SQRT_2), (1.0, 2.0)] {
-        let dial = Abstraction {
+        let abstraction = Abstraction {
             at_near: level,
             at_far: level,
             spacing: 2.0,
             saturation: 1.0,
             ..default()
         };
-        small.style(&ComicStyle::new().with(strokes()).with(dial));
+        small.style(&ComicStyle::new().with(strokes()).with(abstraction));
         let found = darkness(small.settle());
         let wanted = Hatching {
             spacing: 4.0 * factor,

@@ -93,7 +93,7 @@ fn window_mean(cover: impl Fn([f64; 2]) -> f64, samples: u32) -> f64 {
     sum / all
 }
 
-/// The largest change of a tone, in parts of the widest band, while the dial of abstraction turns
+/// The largest change of a tone, in parts of the widest band, while the abstraction grows
 /// by a two-hundredth: 2 to 8 bands that split up to three times.
 pub fn largest_tone_step() -> f64 {
     let mut largest = 0.0f64;

@@ -8,7 +8,7 @@
 #import bevy_comics::effect::pixel::Pixel
 #ifdef OBJECT_DEPTHS
 #import bevy_comics::depth::view::depth_pixel
-#import bevy_comics::objects::{object_depth, object_dial, texel_object}
+#import bevy_comics::objects::{object_depth, object_simplification, texel_object}
 #endif
 
 struct Abstraction {
@@ -24,25 +24,25 @@ struct Abstraction {
     saturation: f32,
 }
 
-// The abstraction at a depth of the map, of an object whose dial is a factor and what is added.
-fn dialled(s: Abstraction, d: f32, dial: vec2<f32>) -> f32 {
-    return clamp(dial.x * graded(s.at_near, s.at_far, s.exponent, d) + dial.y, 0.0, 1.0);
+// The abstraction at a depth of the map, of an object with a factor and an offset of its own.
+fn abstraction_at(s: Abstraction, d: f32, own: vec2<f32>) -> f32 {
+    return clamp(own.x * graded(s.at_near, s.at_far, s.exponent, d) + own.y, 0.0, 1.0);
 }
 
 // The abstraction of a pixel, 0 to 1. In multisampled views, the object is that of the first
 // sample.
 fn abstraction_of(s: Abstraction, p: Pixel) -> f32 {
     var d = select(p.depth.x, p.depth.y, view.flip != 0u);
-    var dial = vec2(1.0, 0.0);
+    var own = vec2(1.0, 0.0);
 #ifdef EFFECT_ABSTRACTION_OBJECTS
 #ifdef OBJECT_DEPTHS
     let object = texel_object(depth_pixel(vec2<i32>(floor(p.position))), 0).x;
-    let place = object_depth(object);
-    d = mix(d, place.x, place.y);
-    dial = object_dial(object);
+    let whole = object_depth(object);
+    d = mix(d, whole.x, whole.y);
+    own = object_simplification(object);
 #endif
 #endif
-    return dialled(s, select(d, 1.0 - d, view.flip != 0u), dial);
+    return abstraction_at(s, select(d, 1.0 - d, view.flip != 0u), own);
 }
 
 // The colour with part of its saturation: mixed with the grey of its luminance.

@@ -25,7 +25,7 @@ bitflags! {
         const NORMALS = 1 << 3;
         const OBJECT_IDS = 1 << 4;
         const OBJECT_STYLES = 1 << 5;
-        /// The places of objects in the depth map are read.
+        /// The depths of objects in the depth map are read.
         const OBJECT_DEPTHS = 1 << 6;
         const VISIBLE_RANGE = 1 << 7;
 

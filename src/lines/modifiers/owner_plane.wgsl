@@ -16,8 +16,8 @@
 fn map_at(raw: f32, object: u32, by_objects: f32) -> f32 {
     let d = depth_map(depth_frame(), raw).x;
 #ifdef OBJECT_DEPTHS
-    let place = object_depth(object);
-    return mix(d, place.x, place.y * by_objects);
+    let whole = object_depth(object);
+    return mix(d, whole.x, whole.y * by_objects);
 #else
     return d;
 #endif

@@ -6,7 +6,7 @@
 #import bevy_comics::depth::view::view
 #import bevy_comics::lines::owner_plane::map_at
 #ifdef OBJECT_DEPTHS
-#import bevy_comics::objects::object_dial
+#import bevy_comics::objects::object_simplification
 #endif
 
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
@@ -18,20 +18,20 @@ struct LineSimplification {
     // Factor of the response that a line needs at full simplification, 1 or more.
     threshold: f32,
     crease_opacity: f32,
-    // 1: lines follow the centre of their object and its dial; 0: their own place.
+    // 1: lines follow the center and the simplification of their object; 0: their own depth.
     by_objects: f32,
     unused_pair: vec2<f32>,
 }
 
 // The simplification of the lines of a surface: its raw depth, and the id of its object.
 fn simplification_at(s: LineSimplification, raw: f32, object: u32) -> f32 {
-    var dial = vec2(1.0, 0.0);
+    var own = vec2(1.0, 0.0);
 #ifdef OBJECT_DEPTHS
-    dial = mix(dial, object_dial(object), s.by_objects);
+    own = mix(own, object_simplification(object), s.by_objects);
 #endif
     let d = map_at(raw, object, s.by_objects);
     let by_distance = graded(s.at_near, s.at_far, s.exponent, select(d, 1.0 - d, view.flip != 0u));
-    return clamp(dial.x * by_distance + dial.y, 0.0, 1.0);
+    return clamp(own.x * by_distance + own.y, 0.0, 1.0);
 }
 
 // The factor of the responses of edges.

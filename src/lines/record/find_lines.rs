@@ -94,12 +94,13 @@ pub(crate) fn find_lines(
     binder: Binder,
     mut ctx: RenderContext,
 ) {
-    let ((request, passes, lines), prepass, range, (ids, widths, places)) = view.into_inner();
+    let ((request, passes, lines), prepass, range, (ids, widths, object_depths)) =
+        view.into_inner();
     let inputs = Inputs {
         request,
         passes,
         lines,
-        sources: Sources::new(prepass, ids, widths).with_places(places),
+        sources: Sources::new(prepass, ids, widths).with_object_depths(object_depths),
         range,
         styles: &object_styles,
         binder: &binder,

@@ -173,8 +173,11 @@ impl Inputs<'_> {
             entries.push(entry(6, styles.as_entire_binding()));
         }
         if key.contains(LineKey::OBJECT_DEPTHS) {
-            let places = self.sources.places.ok_or(NOT_READY)?;
-            entries.push(entry(OBJECT_DEPTHS_BINDING, places.as_entire_binding()));
+            let object_depths = self.sources.object_depths.ok_or(NOT_READY)?;
+            entries.push(entry(
+                OBJECT_DEPTHS_BINDING,
+                object_depths.as_entire_binding(),
+            ));
         }
         if key.contains(LineKey::HIGHLIGHTS) {
             let picture = self.sources.picture.ok_or(NOT_READY)?;

@@ -25,8 +25,8 @@ pub(super) struct Sources<'a> {
     pub ids: Option<&'a TextureView>,
     pub widths: Option<&'a TextureView>,
     pub motion: Option<&'a TextureView>,
-    /// Places of objects in the depth map.
-    pub places: Option<&'a Buffer>,
+    /// Depths of objects in the depth map.
+    pub object_depths: Option<&'a Buffer>,
     /// Depth of the picture, which hides highlighted objects.
     pub picture: Option<&'a TextureView>,
 }
@@ -45,15 +45,18 @@ impl<'a> Sources<'a> {
             ids: ids.map(|ids| &ids.view),
             widths: widths.map(|widths| &widths.view),
             motion: surfaces.motion().map(|motion| &motion.default_view),
-            places: None,
+            object_depths: None,
             picture: None,
         }
     }
 
-    /// With the places of objects.
-    pub fn with_places(self, places: Option<&'a ObjectDepths>) -> Self {
-        let places = places.map(|places| &places.table);
-        Self { places, ..self }
+    /// With the depths of objects.
+    pub fn with_object_depths(self, object_depths: Option<&'a ObjectDepths>) -> Self {
+        let object_depths = object_depths.map(|object_depths| &object_depths.table);
+        Self {
+            object_depths,
+            ..self
+        }
     }
 
     /// Those of highlighted objects.
@@ -65,7 +68,7 @@ impl<'a> Sources<'a> {
             ids: Some(&layer.ids.default_view),
             widths: None,
             motion: self.motion,
-            places: None,
+            object_depths: None,
             picture: self.depth.map(|depth| &depth.default_view),
         }
     }

@@ -114,7 +114,7 @@ impl LineRequest {
         self.reach.max(1) + i32::from(!aligned)
     }
 
-    /// Whether the width and opacity of lines depend on the places of objects in the depth map.
+    /// Whether the width and opacity of lines depend on the depths of objects in the depth map.
     pub fn needs_objects(&self) -> bool {
         let layers = self.layers.is_some_and(|layers| layers.by_objects);
         self.ids && (layers || self.simplification.is_some_and(|s| s.by_objects))
