@@ -22,7 +22,7 @@ pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool 
     let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
     let search = passes.search;
     let search = search.is_some_and(|ids| ids.into_iter().any(compute));
-    let drawn = [passes.faithful, passes.memory];
+    let drawn = [passes.faithful, passes.history];
     resolve || search || cracks || drawn.into_iter().flatten().any(render)
 }
 

@@ -7,7 +7,7 @@ use super::{Plan, ViewPlan, scene::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        FogUniform, LineFog, LineModifiers, LineRequest, LineWeight, MapJumps, MemoryRequest,
+        FogUniform, HistoryRequest, LineFog, LineModifiers, LineRequest, LineWeight, MapJumps,
         Outlines, Sheet, SheetUniform,
     },
     objects::Pressure,
@@ -106,7 +106,7 @@ pub(super) fn plain_request(
         lines: settings.uniform(view.scale_factor, reference, bend, scene.right),
         weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
         boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
-        memory: memory_request(view, &settings, scene),
+        history: history_request(view, &settings, scene),
         cuts: view.cuts,
         motion: false,
         fog: None,
@@ -156,10 +156,10 @@ fn has_motion(scene: &Scene) -> bool {
 }
 
 /// The history that lines are blended with under temporal anti-aliasing.
-fn memory_request(view: &ViewPlan, settings: &Outlines, scene: &Scene) -> Option<MemoryRequest> {
+fn history_request(view: &ViewPlan, settings: &Outlines, scene: &Scene) -> Option<HistoryRequest> {
     let is_jittered = scene.jitter.is_some() && has_motion(scene);
     let uses_history = settings.history_weight > 0.0 && !settings.boil.moves();
-    (is_jittered && uses_history).then_some(MemoryRequest {
+    (is_jittered && uses_history).then_some(HistoryRequest {
         blend_factor: 1.0 - settings.history_weight,
         cuts: view.cuts,
     })

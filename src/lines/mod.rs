@@ -2,15 +2,15 @@
 //! view. `walk.wgsl` looks for cracks, the borders between pixels that lines run along, in
 //! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
 //! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
-//! along weak ones, `join.wgsl` joins them over faces that are thinner than a pixel, `bridge.wgsl`
+//! along weak ones, `join.wgsl` joins them over faces that are thinner than a pixel, `close_gaps.wgsl`
 //! closes gaps, `density.wgsl` measures how densely they lie, `corners.wgsl` notes which cracks meet,
 //! and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
 mod cracks;
 mod draw;
 mod find;
+mod history;
 mod key;
-mod memory;
 mod modifiers;
 mod passes;
 mod pipelines;
@@ -55,13 +55,13 @@ pub(crate) use prepare::ViewLines;
 #[cfg(feature = "objects")]
 pub(crate) use record::HighlightKey;
 pub(crate) use record::{HighlightPipeline, ViewHighlights, draw_highlights};
-pub(crate) use request::{LineRequest, MemoryRequest};
+pub(crate) use request::{HistoryRequest, LineRequest};
 pub(crate) use settings::{FogUniform, LinesUniform, ViewFog, has_fog};
 pub(crate) use tiles::{TileList, TileLists, tile_shader, vertices};
 
 use crate::schedule::{ComicsSystems, PrepareComics};
 use find::ResolvePipeline;
-use memory::MemoryPipeline;
+use history::HistoryPipeline;
 use pipelines::LineShaders;
 
 /// Finds the lines of the views that request them.
@@ -74,7 +74,7 @@ pub(crate) fn build_render(app: &mut App) {
         .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<HistoryPipeline>>()
         .init_gpu_resource::<SpecializedRenderPipelines<HighlightPipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
@@ -111,7 +111,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "tiles/listed.wgsl");
     load_shader_library!(app, "settings/weight.wgsl");
     load_shader_library!(app, "settings/boil.wgsl");
-    load_shader_library!(app, "memory/memory.wgsl");
+    load_shader_library!(app, "history/history.wgsl");
     load_shader_library!(app, "draw/surface.wgsl");
     load_shader_library!(app, "find/hidden.wgsl");
     load_shader_library!(app, "link/budget.wgsl");
@@ -125,7 +125,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "cracks/planes.wgsl");
     load_shader_library!(app, "cracks/read_planes.wgsl");
     load_shader_library!(app, "link/gaps.wgsl");
-    load_shader_library!(app, "memory/lives.wgsl");
+    load_shader_library!(app, "history/holds.wgsl");
     load_shader_library!(app, "draw/overshoot.wgsl");
     load_shader_library!(app, "link/chain.wgsl");
     load_shader_library!(app, "link/rim.wgsl");
@@ -135,9 +135,9 @@ fn load_shaders(app: &mut App) {
     embedded_asset!(app, "find/walk.wgsl");
     embedded_asset!(app, "find/cells.wgsl");
     embedded_asset!(app, "link/link.wgsl");
-    embedded_asset!(app, "memory/persist.wgsl");
+    embedded_asset!(app, "history/hold.wgsl");
     embedded_asset!(app, "link/join.wgsl");
-    embedded_asset!(app, "link/bridge.wgsl");
+    embedded_asset!(app, "link/close_gaps.wgsl");
     embedded_asset!(app, "draw/ends.wgsl");
     embedded_asset!(app, "draw/strokes.wgsl");
     embedded_asset!(app, "link/density.wgsl");
@@ -150,7 +150,7 @@ fn load_shaders(app: &mut App) {
     embedded_asset!(app, "draw/columns.wgsl");
     embedded_asset!(app, "find/faithful.wgsl");
     embedded_asset!(app, "draw/draw.wgsl");
-    embedded_asset!(app, "memory/remember.wgsl");
+    embedded_asset!(app, "history/accumulate.wgsl");
     embedded_asset!(app, "record/highlights.wgsl");
 }
 
@@ -166,6 +166,6 @@ fn init_pipelines(
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
     commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
-    commands.insert_resource(MemoryPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(HistoryPipeline::new(&fullscreen, &assets));
     commands.insert_resource(HighlightPipeline::new(&fullscreen, &assets));
 }

@@ -17,8 +17,8 @@ use bevy::{
 use super::{
     cracks::largest_buffer,
     find::{ResolveKey, ResolvePipeline},
+    history::{HistoryKey, HistoryPipeline},
     key::LineKey,
-    memory::{MemoryKey, MemoryPipeline},
     pipelines::{LinePass, LineShaders, SearchPass},
     request::LineRequest,
     tiles::TileList,
@@ -38,7 +38,7 @@ pub(crate) struct LinePasses {
     /// Draws the faithful lines, if there are any.
     pub faithful: Option<CachedRenderPipelineId>,
     /// Mixes the ink with that of the frames before.
-    pub memory: Option<CachedRenderPipelineId>,
+    pub history: Option<CachedRenderPipelineId>,
 }
 
 impl LinePasses {
@@ -72,9 +72,9 @@ pub(crate) struct CellPasses {
     /// Joins lines over faces that are thinner than a pixel.
     pub join: Option<CachedComputePipelineId>,
     /// Keeps the lines of the last frames.
-    pub persist: Option<CachedComputePipelineId>,
+    pub hold: Option<CachedComputePipelineId>,
     /// Closes gaps.
-    pub bridge: Option<CachedComputePipelineId>,
+    pub close_gaps: Option<CachedComputePipelineId>,
     /// Measures how densely lines lie: in small squares, and in large ones.
     pub measure: Option<[CachedComputePipelineId; 2]>,
     /// Notes which cracks meet at corners, before lines are followed.
@@ -101,8 +101,8 @@ impl CellPasses {
             find,
             link,
             join: with(LineKey::LEDGES, SearchPass::Join),
-            persist: with(LineKey::PERSISTS, SearchPass::Persist(key.for_persist())),
-            bridge: with(LineKey::BRIDGED, SearchPass::Bridge),
+            hold: with(LineKey::HOLDS, SearchPass::Hold(key.for_hold())),
+            close_gaps: with(LineKey::BRIDGED, SearchPass::CloseGaps),
             measure,
             corners: with(LineKey::COMPLETED, SearchPass::Corners),
             settle: with(LineKey::COMPLETED, SearchPass::Settle(key.for_settle())),
@@ -112,7 +112,7 @@ impl CellPasses {
 
     pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
         let pairs = [self.link, self.measure].into_iter().flatten().flatten();
-        let rest = [self.join, self.persist, self.bridge];
+        let rest = [self.join, self.hold, self.close_gaps];
         let last = [self.corners, self.settle, self.ends];
         let rest = rest.into_iter().chain(last).flatten();
         [self.find].into_iter().chain(pairs).chain(rest)
@@ -147,8 +147,8 @@ pub(crate) struct LinePipelines<'w> {
     shaders: Res<'w, LineShaders>,
     resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
     resolve: Res<'w, ResolvePipeline>,
-    memories: ResMut<'w, SpecializedRenderPipelines<MemoryPipeline>>,
-    memory: Res<'w, MemoryPipeline>,
+    histories: ResMut<'w, SpecializedRenderPipelines<HistoryPipeline>>,
+    history: Res<'w, HistoryPipeline>,
     device: Res<'w, RenderDevice>,
 }
 
@@ -202,15 +202,15 @@ impl LinePipelines<'_> {
             search,
             cracks,
             faithful,
-            memory: None,
+            history: None,
         };
-        if request.memory.is_some() && passes.has_ink() {
-            let key = MemoryKey {
+        if request.history.is_some() && passes.has_ink() {
+            let key = HistoryKey {
                 oblique: key.contains(LineKey::OBLIQUE),
                 tiled: passes.are_tiles_complete(),
             };
-            let memory = self.memories.specialize(cache, &self.memory, key);
-            passes.memory = Some(memory);
+            let history = self.histories.specialize(cache, &self.history, key);
+            passes.history = Some(history);
         }
         passes
     }

@@ -29,8 +29,8 @@ pub(crate) struct LineShaders {
     cells: Handle<Shader>,
     link: Handle<Shader>,
     join: Handle<Shader>,
-    persist: Handle<Shader>,
-    bridge: Handle<Shader>,
+    hold: Handle<Shader>,
+    close_gaps: Handle<Shader>,
     ends: Handle<Shader>,
     strokes: Handle<Shader>,
     density: Handle<Shader>,
@@ -52,8 +52,8 @@ impl LineShaders {
             cells: load_embedded_asset!(assets, "find/cells.wgsl"),
             link: load_embedded_asset!(assets, "link/link.wgsl"),
             join: load_embedded_asset!(assets, "link/join.wgsl"),
-            persist: load_embedded_asset!(assets, "memory/persist.wgsl"),
-            bridge: load_embedded_asset!(assets, "link/bridge.wgsl"),
+            hold: load_embedded_asset!(assets, "history/hold.wgsl"),
+            close_gaps: load_embedded_asset!(assets, "link/close_gaps.wgsl"),
             ends: load_embedded_asset!(assets, "draw/ends.wgsl"),
             strokes: load_embedded_asset!(assets, "draw/strokes.wgsl"),
             density: load_embedded_asset!(assets, "link/density.wgsl"),
@@ -83,9 +83,9 @@ pub(crate) enum SearchPass {
     /// Joins lines over faces that are thinner than a pixel.
     Join,
     /// Keeps the lines of the last frames.
-    Persist(LineKey),
+    Hold(LineKey),
     /// Closes gaps in lines.
-    Bridge,
+    CloseGaps,
     /// Measures how densely lines lie in small squares, or in large ones.
     Measure { coarse: bool },
     /// Notes which cracks meet at corners.
@@ -106,9 +106,9 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
             SearchPass::Link { .. } => ("comics_link_lines", "link", &self.link),
             SearchPass::Join => ("comics_join_lines", "join", &self.join),
-            SearchPass::Persist(_) => ("comics_persist_lines", "persist", &self.persist),
+            SearchPass::Hold(_) => ("comics_hold_lines", "hold_lines", &self.hold),
             SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
-            SearchPass::Bridge => ("comics_bridge_lines", "bridge", &self.bridge),
+            SearchPass::CloseGaps => ("comics_close_gaps", "close_gaps", &self.close_gaps),
             SearchPass::Measure { .. } => ("comics_measure_lines", "measure", &self.density),
             SearchPass::Corners => ("comics_line_corners", "corners", &self.corners),
             SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
@@ -126,9 +126,9 @@ impl SpecializedComputePipeline for LineShaders {
                 definitions([(coarse, "COARSE")]).collect(),
             ),
             SearchPass::Join => (LineKey::link_layout(), vec![]),
-            SearchPass::Persist(key) => (key.persist_layout(), key.defs()),
+            SearchPass::Hold(key) => (key.hold_layout(), key.defs()),
             SearchPass::Ends(key) => (LineKey::ends_layout(), key.defs()),
-            SearchPass::Bridge => (LineKey::bridge_layout(), vec![]),
+            SearchPass::CloseGaps => (LineKey::gaps_layout(), vec![]),
             SearchPass::Corners => (LineKey::corners_layout(), vec![]),
             SearchPass::Settle(key) => (key.settle_layout(), key.defs()),
         };

@@ -22,8 +22,8 @@ use super::{
     cracks::{CrackBuffers, CrackStore, LineDensities, ViewCracks},
     draw::StrokeList,
     find::Resolved,
+    history::{LineHistory, LineHolds},
     key::LineKey,
-    memory::{LineLives, LineMemory},
     passes::{FindPass, LinePasses},
     request::{LinePassUniform, LineRequest, blocks},
     settings::LineEdge,
@@ -46,10 +46,10 @@ pub(crate) struct ViewLines {
     pub ink: Option<CachedTexture>,
     /// The pixels that own its lines, if their colour depends on them.
     pub owners: Option<CachedTexture>,
-    /// The ink of this frame and of those before, if lines remember.
-    pub memory: Option<LineMemory>,
+    /// The ink of this frame and of those before, if lines have a history.
+    pub history: Option<LineHistory>,
     /// How long lines stay where their edges have become weak, if they do.
-    pub lives: Option<LineLives>,
+    pub holds: Option<LineHolds>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
 }
@@ -82,8 +82,8 @@ impl Default for ViewLines {
             tiles: None,
             ink: None,
             owners: None,
-            memory: None,
-            lives: None,
+            history: None,
+            holds: None,
             found: AtomicBool::new(false),
         }
     }
@@ -102,8 +102,8 @@ impl ViewLines {
     /// The ink; `None` unless the passes of this frame were recorded.
     pub fn found(&self) -> Option<&CachedTexture> {
         let found = self.found.load(Ordering::Relaxed);
-        let remembered = self.memory.as_ref().map(LineMemory::ink);
-        remembered.or(self.ink.as_ref()).filter(|_| found)
+        let history = self.history.as_ref().map(LineHistory::ink);
+        history.or(self.ink.as_ref()).filter(|_| found)
     }
 }
 
@@ -175,21 +175,21 @@ impl ViewLines {
         self.ink = ink.then(|| drawn("comics_line_ink", INK_FORMAT));
         self.owners = (ink && passes.key.contains(LineKey::SURFACE))
             .then(|| drawn("comics_line_owners", OWNER_FORMAT));
-        let before = self.memory.take();
+        let before = self.history.take();
         let kept = self.found.load(Ordering::Relaxed);
-        let memory = request.memory.filter(|_| passes.memory.is_some());
-        self.memory = memory.map(|memory| {
-            let request = (&memory, request.size, &request.settings);
-            LineMemory::next(before, kept, device, request)
+        let history = request.history.filter(|_| passes.history.is_some());
+        self.history = history.map(|history| {
+            let request = (&history, request.size, &request.settings);
+            LineHistory::next(before, kept, device, request)
         });
-        let before = self.lives.take();
-        self.lives = passes
+        let before = self.holds.take();
+        self.holds = passes
             .key
-            .contains(LineKey::PERSISTS)
-            .then(|| LineLives::next(before, kept, device, request));
+            .contains(LineKey::HOLDS)
+            .then(|| LineHolds::next(before, kept, device, request));
         self.found = AtomicBool::new(false);
-        let is_new = self.memory.as_ref().is_none_or(|memory| memory.is_new);
-        let past_size = self.lives.as_ref().map(LineLives::past_size);
+        let is_new = self.history.as_ref().is_none_or(|history| history.is_new);
+        let past_size = self.holds.as_ref().map(LineHolds::past_size);
         let uniform = request.uniform(is_new, past_size.unwrap_or_default());
         self.uniform.set(uniform);
         self.uniform.write_buffer(device, queue);

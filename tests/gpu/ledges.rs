@@ -31,11 +31,11 @@ fn seen(small: &mut Small, [down, lean]: [f32; 2], shift: f32) -> Vec<f32> {
 }
 
 /// Lines of a pixel, without edges between objects.
-fn creases(continuity: f32) -> Outlines {
+fn creases(hysteresis: f32) -> Outlines {
     Outlines {
         width: 1.0,
         objects: None,
-        hysteresis: continuity,
+        hysteresis,
         ..default()
     }
 }
@@ -96,7 +96,7 @@ fn assert_ledges_are_whole(thicknesses: &[f32]) {
     assert_eq!(small.errors(), 0);
 }
 
-/// Where the face is not seen at all, the step alone has no line. Without `continuity`, lines are
+/// Where the face is not seen at all, the step alone has no line. Without `hysteresis`, lines are
 /// not joined.
 #[test]
 fn steps_without_a_ledge_have_no_line() {

@@ -307,7 +307,7 @@ fn turning_shapes_have_few_dashes() {
 /// their gaps closed, more of them have lines, these are in fewer pieces, and hardly more lines are
 /// wrong.
 #[test]
-#[ignore = "long: large pictures; quick test bridge::thin_wires_at_small_angles_are_whole"]
+#[ignore = "long: large pictures; quick test gap_closing::thin_wires_at_small_angles_are_whole"]
 fn closed_gaps_make_distant_wires_whole() {
     let mut pictures = Pictures::new(REPORTED, ids_alone());
     pictures.show(Specimen::Wires);

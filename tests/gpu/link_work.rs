@@ -21,11 +21,11 @@ const NEAR: f64 = 4.0 * 4.0;
 
 /// Edges between objects: each of their cracks is certain, so that none is left to continue a
 /// line, and none is left out.
-fn objects(continuity: f32, budget: f32) -> ComicStyle {
+fn objects(hysteresis: f32, budget: f32) -> ComicStyle {
     ComicStyle::new().with(Outlines {
         silhouettes: None,
         creases: None,
-        hysteresis: continuity,
+        hysteresis,
         min_length: 1,
         smooth: false,
         ink_budget: budget,
@@ -46,7 +46,7 @@ fn cells_without_weak_cracks_load_no_window() {
     assert_eq!(work.settle, SETTLE / CELL, "{work:?}");
 }
 
-/// Without continuity there are no passes that link. With a budget, the cracks of every pixel
+/// Without hysteresis there are no passes that link. With a budget, the cracks of every pixel
 /// that has any are loaded, to be weighed: of one pixel at least, and of all at most.
 #[test]
 fn a_budget_loads_its_neighbourhood_and_each_crack_once() {

@@ -1,8 +1,8 @@
-//! Whether lines are whole: dashes of responses around the threshold, and specks.
+//! Whether lines are whole: dashes of responses around the threshold, and short pieces.
 
 use bevy_comics_testkit::reference::{
     crack::Crack,
-    link::{Place, linked, without_specks},
+    link::{Place, linked, without_short_pieces},
 };
 
 use crate::{
@@ -70,9 +70,9 @@ fn lines_of_responses_around_the_threshold_are_whole() {
     }
 }
 
-/// Pieces of fewer cracks than asked are specks, around corners too.
+/// Pieces of fewer cracks than asked are left out, around corners too.
 #[test]
-fn specks_are_pieces_of_fewer_cracks_than_asked() {
+fn pieces_of_fewer_cracks_than_asked_are_left_out() {
     // Three in a row, an L of two, a single one, a U of three, and a staircase of seven.
     let stairs: Vec<Place> = (0..7)
         .map(|i| ([40 + i / 2, 40 + i / 2 + i % 2], 1 - i as usize % 2))
@@ -88,21 +88,21 @@ fn specks_are_pieces_of_fewer_cracks_than_asked() {
         .iter()
         .flat_map(|piece| piece.iter().copied())
         .collect();
-    for specks in 1..=8 {
-        let kept = without_specks(&all, [64, 64], specks);
+    for min_length in 1..=8 {
+        let kept = without_short_pieces(&all, [64, 64], min_length);
         for piece in pieces {
             let there = piece.iter().filter(|place| kept.contains(*place)).count();
-            let is_kept = piece.len() >= specks as usize;
+            let is_kept = piece.len() >= min_length as usize;
             let want = if is_kept { piece.len() } else { 0 };
-            assert_eq!(there, want, "{piece:?}, {specks}");
+            assert_eq!(there, want, "{piece:?}, {min_length}");
         }
     }
 }
 
 /// Outlines with many weak edges.
-fn weak(continuity: f32) -> Outlines {
+fn weak(hysteresis: f32) -> Outlines {
     Outlines {
-        hysteresis: continuity,
+        hysteresis,
         hysteresis_ratio: 0.1,
         silhouettes: Some(Silhouettes {
             threshold: 0.3,
@@ -151,22 +151,22 @@ fn lines_continue_as_far_as_asked() {
 }
 
 #[test]
-#[ignore = "long: every distance with every size of specks"]
-fn lines_continue_as_far_as_asked_with_any_specks() {
+#[ignore = "long: every distance with every `min_length`"]
+fn lines_continue_as_far_as_asked_with_any_min_length() {
     let distances = [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0];
-    let with_specks = |continuity| [1, 2, 3, 7].map(|specks| (continuity, specks));
-    let cases = distances.into_iter().flat_map(with_specks);
+    let with_lengths = |hysteresis| [1, 2, 3, 7].map(|min_length| (hysteresis, min_length));
+    let cases = distances.into_iter().flat_map(with_lengths);
     assert_continued_as_reference(UVec2::new(96, 64), cases);
 }
 
 fn assert_continued_as_reference(size: UVec2, cases: impl IntoIterator<Item = (f32, u32)>) {
     let mut small = Small::new(size, Msaa::Off);
-    for (continuity, specks) in cases {
+    for (hysteresis, min_length) in cases {
         let outlines = Outlines {
-            min_length: specks,
-            ..weak(continuity)
+            min_length,
+            ..weak(hysteresis)
         };
-        let what = format!("{continuity} px, specks {specks}");
+        let what = format!("{hysteresis} px, min_length {min_length}");
         assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
 }

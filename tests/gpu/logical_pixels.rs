@@ -38,9 +38,9 @@ fn closing_step(small: &mut Small, scale: u32) {
     );
 }
 
-fn lines(continuity: f32, taper: f32) -> Outlines {
+fn lines(hysteresis: f32, taper: f32) -> Outlines {
     Outlines {
-        hysteresis: continuity,
+        hysteresis,
         hysteresis_ratio: 0.1,
         min_length: 1,
         ..overshoot::lines(4.0, 0.0, taper)
@@ -61,9 +61,9 @@ fn lines_continue_by_logical_pixels() {
     for scale in [1, 2] {
         closing_step(&mut small, scale);
         let certain = length(&mut small, lines(0.0, 0.0));
-        for continuity in [4, 8] {
-            let grown = length(&mut small, lines(continuity as f32, 0.0)) - certain;
-            assert_eq!(grown, continuity * scale as usize, "scale {scale}");
+        for hysteresis in [4, 8] {
+            let grown = length(&mut small, lines(hysteresis as f32, 0.0)) - certain;
+            assert_eq!(grown, hysteresis * scale as usize, "scale {scale}");
         }
         // The weak part is longer than that.
         let whole = length(&mut small, lines(32.0, 0.0)) - certain;

@@ -159,8 +159,8 @@ impl CrackBuffers {
         ]
     }
 
-    /// The bindings of `bridge.wgsl`, which reads the planes `from` a buffer.
-    pub fn bridge_entries(&self, from: usize) -> [BindGroupEntry<'_>; 3] {
+    /// The bindings of `close_gaps.wgsl`, which reads the planes `from` a buffer.
+    pub fn gaps_entries(&self, from: usize) -> [BindGroupEntry<'_>; 3] {
         let [read, written] = self.link_entries(from);
         [read, written, entry(18, &self.words)]
     }

@@ -71,7 +71,7 @@ fn list_cell(cell: vec2<u32>) {
 #endif
 
 #ifdef BRIDGED
-// These rows of a block, and those in which bridge.wgsl may add cracks.
+// These rows of a block, and those in which close_gaps.wgsl may add cracks.
 fn with_gaps(rows: u32) -> u32 {
     var all = rows;
     for (var i = 1; i <= line_pass.grid.gap_closing; i++) {

@@ -67,8 +67,8 @@ impl LineKey {
         in_cells("comics_link_lines", vec![], [20], [21])
     }
 
-    pub fn bridge_layout() -> BindGroupLayoutDescriptor {
-        in_cells("comics_bridge_lines", vec![], [20], [18, 21])
+    pub fn gaps_layout() -> BindGroupLayoutDescriptor {
+        in_cells("comics_close_gaps", vec![], [20], [18, 21])
     }
 
     pub fn corners_layout() -> BindGroupLayoutDescriptor {
@@ -85,9 +85,9 @@ impl LineKey {
         )
     }
 
-    pub fn persist_layout(self) -> BindGroupLayoutDescriptor {
+    pub fn hold_layout(self) -> BindGroupLayoutDescriptor {
         let inputs = self.inputs(ShaderStages::COMPUTE);
-        in_cells("comics_persist_lines", inputs, [28], [21, 29])
+        in_cells("comics_hold_lines", inputs, [28], [21, 29])
     }
 
     pub fn ends_layout() -> BindGroupLayoutDescriptor {

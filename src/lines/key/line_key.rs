@@ -58,7 +58,7 @@ bitflags! {
         const COMPLETED = 1 << 23;
         /// Lines stay where their edges have become weak; and whether the engine's motion vectors
         /// say where they were.
-        const PERSISTS = 1 << 24;
+        const HOLDS = 1 << 24;
         const MOTION = 1 << 25;
         /// Loose ends are extended.
         const OVERSHOOTS = 1 << 26;
@@ -180,7 +180,7 @@ impl LineKey {
         .union(Self::WIDTH_BY_OBJECTS)
         .union(Self::FINDS_BY_OBJECTS)
         .union(Self::COMPLETED)
-        .union(Self::PERSISTS)
+        .union(Self::HOLDS)
         .union(Self::OVERSHOOTS)
         .union(Self::LEDGES)
         .union(Self::RIMS)
@@ -190,12 +190,13 @@ impl LineKey {
 
     pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
-        let forms = [
+        let equations = [
             lines.silhouettes.map(|s| s.equations),
             lines.creases.map(|c| c.equations),
         ];
-        let [silhouettes, creases] = forms.map(|form| form == Some(Equations::Corrected));
-        let faithful = forms.map(|form| form == Some(Equations::Faithful));
+        let [silhouettes, creases] =
+            equations.map(|equations| equations == Some(Equations::Corrected));
+        let faithful = equations.map(|equations| equations == Some(Equations::Faithful));
         let object_edges = lines.objects.is_some() && request.ids;
         let rims = silhouettes && (creases || object_edges);
         let fewer = request.simplification.is_some_and(|s| s.threshold > 1.0);
@@ -226,8 +227,8 @@ impl LineKey {
             (faithful[0], Self::FAITHFUL_SILHOUETTES),
             (faithful[1], Self::FAITHFUL_CREASES),
             (lines.links(), Self::COMPLETED),
-            (lines.persists(), Self::PERSISTS),
-            (lines.persists() && request.motion, Self::MOTION),
+            (lines.holds_lines(), Self::HOLDS),
+            (lines.holds_lines() && request.motion, Self::MOTION),
             (lines.overshoots(), Self::OVERSHOOTS),
             (lines.joins(), Self::LEDGES),
             (rims && lines.links(), Self::RIMS),
@@ -361,7 +362,7 @@ impl LineKey {
     }
 
     /// The part that keeping the lines of the last frames depends on.
-    pub fn for_persist(self) -> Self {
+    pub fn for_hold(self) -> Self {
         self.when(
             Self::MOTION,
             Self::MOTION | Self::DEPTH | self & Self::OBLIQUE,

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::lines::gaps
 
-// Gaps of at most three cracks in runs of lines, see bridge.wgsl.
+// Gaps of at most three cracks in runs of lines, see close_gaps.wgsl.
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::planes::{FOUND_EAST, FOUND_SOUTH}

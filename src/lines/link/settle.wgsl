@@ -322,7 +322,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 
 // Whether a crack is in a piece of line of fewer cracks than Grid::min_length. Pieces that meet
 // others, or that go on outside of the grid, are none.
-fn is_speck(g: Grid, crack: vec3<i32>) -> bool {
+fn is_too_short(g: Grid, crack: vec3<i32>) -> bool {
     let most = g.min_length - 1;
     let back = cracks_to_end(g, crack, first_corner(crack), most);
     return back < most && back + cracks_to_end(g, crack, last_corner(crack), most - back) < most;
@@ -349,7 +349,7 @@ fn packed_bend(g: Grid, crack: vec3<i32>, kept: bool, packed: u32) -> u32 {
 // `linked`: whether it was linked; `beside`: for a crack to the south, whether that to the east of
 // its pixel is settled already.
 fn settle_crack(g: Grid, crack: vec3<i32>, linked: bool, beside: bool) {
-    let kept = linked && !(g.min_length > 1 && is_speck(g, crack));
+    let kept = linked && !(g.min_length > 1 && is_too_short(g, crack));
     let at = crack.y * g.rect.z + crack.x;
     var bend = 0x8080u;
 #ifdef EDITS

@@ -6,7 +6,7 @@ use bevy::render::render_resource::{
 
 use super::{
     inputs::Inputs,
-    ready::{Ready, ReadyDensities, ReadyLives},
+    ready::{Ready, ReadyDensities, ReadyHolds},
 };
 use crate::{
     diagnostics::SkipReason,
@@ -62,14 +62,14 @@ impl Inputs<'_> {
     }
 
     /// The pass that closes gaps, if there is one.
-    pub(super) fn bridge_pass(
+    pub(super) fn gaps_pass(
         &self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
     ) -> Result<Option<Compute<'_>>, SkipReason> {
-        let entries = buffers.bridge_entries(self.request.joined() % 2);
-        let pass = |id| self.in_cells(id, &LineKey::bridge_layout(), &entries);
-        passes.bridge.map(pass).transpose()
+        let entries = buffers.gaps_entries(self.request.joined() % 2);
+        let pass = |id| self.in_cells(id, &LineKey::gaps_layout(), &entries);
+        passes.close_gaps.map(pass).transpose()
     }
 
     /// The passes that measure how densely lines lie, if there are any.
@@ -117,20 +117,20 @@ impl Inputs<'_> {
     }
 
     /// The pass that keeps the lines of the last frames, if there is one.
-    pub(super) fn persist_pass(
+    pub(super) fn hold_pass(
         &self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Option<ReadyLives<'_>>, SkipReason> {
-        let (Some(id), Some(lives)) = (passes.persist, &self.lines.lives) else {
+    ) -> Result<Option<ReadyHolds<'_>>, SkipReason> {
+        let (Some(id), Some(holds)) = (passes.hold, &self.lines.holds) else {
             return Ok(None);
         };
-        let key = self.passes.key.for_persist();
+        let key = self.passes.key.for_hold();
         let mut entries = vec![buffers.written_planes(self.request.joined())];
-        entries.extend(lives.entries());
+        entries.extend(holds.entries());
         entries.extend(self.entries(key)?);
-        let ready = self.in_cells(id, &key.persist_layout(), &entries)?;
-        Ok(Some((ready, lives)))
+        let ready = self.in_cells(id, &key.hold_layout(), &entries)?;
+        Ok(Some((ready, holds)))
     }
 
     /// The pass that finds loose ends, if there is one.

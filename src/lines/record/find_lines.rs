@@ -146,7 +146,7 @@ impl Inputs<'_> {
         let resolve = self.resolve_pass()?;
         let search = self.search_passes()?;
         let faithful = self.faithful_pass()?;
-        let remember = self.memory_pass()?;
+        let accumulate = self.history_pass()?;
         let cracks = match (&passes.cracks, &lines.cracks) {
             (Some(passes), Some(cracks)) => Some(self.crack_passes(passes, cracks)?),
             _ => None,
@@ -175,10 +175,10 @@ impl Inputs<'_> {
         };
         let span = diagnostics.time_span(encoder, "comics_draw_lines");
         self.draw_ink(encoder, ink, (faithful.as_ref(), cracks.as_ref()));
-        if let Some((memory, (pipeline, group))) = &remember {
+        if let Some((history, (pipeline, group))) = &accumulate {
             let tiles = lines.tiles.as_ref().map(|tiles| &tiles.lists);
             let tiles = tiles.filter(|_| passes.are_tiles_complete());
-            memory.record(encoder, (pipeline, group), tiles);
+            history.record(encoder, (pipeline, group), tiles);
         }
         span.end(encoder);
         Ok(())

@@ -20,8 +20,8 @@ use crate::{
     lines::{
         cracks::CrackStore,
         find::Resolved,
+        history::{HistoryKey, LineHistory},
         key::LineKey,
-        memory::{LineMemory, MemoryKey},
         passes::{CrackPasses, FindPass, LinePasses},
         prepare::{Cracks, Tiles, ViewLines},
         request::LineRequest,
@@ -41,8 +41,8 @@ pub(super) struct Inputs<'a> {
     pub binder: &'a Binder<'a>,
 }
 
-/// The pass that remembers, ready to be recorded.
-type MemoryPass<'a> = (&'a LineMemory, Ready<'a, RenderPipeline>);
+/// The pass that blends ink with the history, ready to be recorded.
+type HistoryPass<'a> = (&'a LineHistory, Ready<'a, RenderPipeline>);
 
 /// The pass that picks samples, ready to be recorded.
 type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
@@ -125,10 +125,10 @@ impl Inputs<'_> {
         Ok(Some((resolved, self.render(*id, &key.layout(), &entries)?)))
     }
 
-    /// The pass that mixes the ink with that of the frames before, if lines remember.
-    pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, SkipReason> {
-        let ViewLines { memory, ink, .. } = self.lines;
-        let (Some(id), Some(memory), Some(ink)) = (self.passes.memory, memory, ink) else {
+    /// The pass that mixes the ink with that of the frames before, if lines have a history.
+    pub fn history_pass(&self) -> Result<Option<HistoryPass<'_>>, SkipReason> {
+        let ViewLines { history, ink, .. } = self.lines;
+        let (Some(id), Some(history), Some(ink)) = (self.passes.history, history, ink) else {
             return Ok(None);
         };
         let motion = self.sources.motion.ok_or(NOT_READY)?;
@@ -137,9 +137,9 @@ impl Inputs<'_> {
             entry(24, motion.into_binding()),
         ];
         self.prepass()?.push(Reads::default(), &mut entries)?;
-        entries.extend(memory.entries());
-        let ready = self.render(id, &MemoryKey::layout(), &entries)?;
-        Ok(Some((memory, ready)))
+        entries.extend(history.entries());
+        let ready = self.render(id, &HistoryKey::layout(), &entries)?;
+        Ok(Some((history, ready)))
     }
 
     /// The pass that draws the faithful equations, if there are any.
@@ -262,8 +262,8 @@ impl Inputs<'_> {
                     find: self.compute(passes.find, &key.cells_layout(), &entries)?,
                     link: self.link_passes(&passes, buffers)?,
                     join: self.join_pass(&passes, buffers)?,
-                    persist: self.persist_pass(&passes, buffers)?,
-                    bridge: self.bridge_pass(&passes, buffers)?,
+                    hold: self.hold_pass(&passes, buffers)?,
+                    close_gaps: self.gaps_pass(&passes, buffers)?,
                     measure: self.measure_passes(&passes, cracks, buffers)?,
                     corners: self.corners_pass(&passes, buffers)?,
                     settle: self.settle_pass(&passes, cracks, buffers)?,

@@ -13,7 +13,7 @@ use crate::{
     lines::{
         cracks::{CrackBuffers, LineDensities},
         draw::StrokeList,
-        memory::LineLives,
+        history::LineHolds,
         request::{LineRequest, WORKGROUP, blocks},
         textures::cleared,
         tiles::{TileList, TileLists},
@@ -24,7 +24,7 @@ use crate::{
 pub(super) type Ready<'a, P> = (&'a P, BindGroup);
 
 /// The pass that keeps the lines of the last frames, ready to be recorded.
-pub(super) type ReadyLives<'a> = (Ready<'a, ComputePipeline>, &'a LineLives);
+pub(super) type ReadyHolds<'a> = (Ready<'a, ComputePipeline>, &'a LineHolds);
 
 /// The passes that measure how densely lines lie, ready to be recorded.
 pub(super) type ReadyDensities<'a> = ([Ready<'a, ComputePipeline>; 2], &'a LineDensities);
@@ -39,8 +39,8 @@ pub(super) struct ReadyCells<'a> {
     pub find: Ready<'a, ComputePipeline>,
     pub link: Vec<Ready<'a, ComputePipeline>>,
     pub join: Option<Ready<'a, ComputePipeline>>,
-    pub persist: Option<ReadyLives<'a>>,
-    pub bridge: Option<Ready<'a, ComputePipeline>>,
+    pub hold: Option<ReadyHolds<'a>>,
+    pub close_gaps: Option<Ready<'a, ComputePipeline>>,
     pub measure: Option<ReadyDensities<'a>>,
     pub corners: Option<Ready<'a, ComputePipeline>>,
     pub settle: Option<Ready<'a, ComputePipeline>>,
@@ -60,13 +60,13 @@ impl ReadyCells<'_> {
             self.dispatch(encoder, "comics_join_lines", join);
         }
         let mut copies = self.link.len() + usize::from(self.join.is_some());
-        if let Some((persist, lives)) = &self.persist {
-            lives.clear(encoder);
-            self.dispatch(encoder, "comics_persist_lines", persist);
+        if let Some((hold, holds)) = &self.hold {
+            holds.clear(encoder);
+            self.dispatch(encoder, "comics_hold_lines", hold);
         }
-        if let Some(bridge) = &self.bridge {
+        if let Some(close_gaps) = &self.close_gaps {
             self.buffers.copy_planes(encoder, copies % 2);
-            self.dispatch(encoder, "comics_bridge_lines", bridge);
+            self.dispatch(encoder, "comics_close_gaps", close_gaps);
             copies += 1;
         }
         if let Some((passes, densities)) = &self.measure {

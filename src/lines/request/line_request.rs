@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     grid::{Grid, words},
-    memory::MemoryRequest,
+    history::HistoryRequest,
     uniform::LinePassUniform,
 };
 use crate::{
@@ -45,8 +45,8 @@ pub(crate) struct LineRequest {
     pub lines: LinesUniform,
     pub weight: WeightUniform,
     pub boil: BoilUniform,
-    /// What lines remember.
-    pub memory: Option<MemoryRequest>,
+    /// The history that lines are blended with.
+    pub history: Option<HistoryRequest>,
     /// Number of camera cuts so far.
     pub cuts: u32,
     /// The engine's motion vectors can be read.
@@ -198,7 +198,7 @@ impl LineRequest {
         }
     }
 
-    /// `is_new`: the memory has nothing in it yet. `past_size`: size of the grid of the last frame,
+    /// `is_new`: the history has nothing in it yet. `past_size`: size of the grid of the last frame,
     /// if lines stay.
     pub fn uniform(&self, is_new: bool, past_size: UVec2) -> LinePassUniform {
         LinePassUniform {
@@ -213,8 +213,8 @@ impl LineRequest {
                 .map(LineSimplification::uniform)
                 .unwrap_or_default(),
             boil: self.boil,
-            memory: (self.memory)
-                .map(|memory| memory.uniform(self.grid_reach(), is_new))
+            history: (self.history)
+                .map(|history| history.uniform(self.grid_reach(), is_new))
                 .unwrap_or_default(),
             sheet: self.sheet,
         }

@@ -8,7 +8,7 @@
 #import bevy_comics::lines::edge::{Grid, Lines}
 #import bevy_comics::lines::fade::LineFade
 #import bevy_comics::lines::fog::Fog
-#import bevy_comics::lines::memory::Memory
+#import bevy_comics::lines::history::History
 #import bevy_comics::lines::layer_lines::LineLayers
 #import bevy_comics::lines::sheet::Sheet
 #import bevy_comics::lines::simplification::LineSimplification
@@ -24,7 +24,7 @@ struct LinePass {
     layers: LineLayers,
     simplification: LineSimplification,
     boil: Boil,
-    memory: Memory,
+    history: History,
     sheet: Sheet,
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::render::render_resource::ShaderType;
 
-use super::{grid::Grid, memory::MemoryUniform};
+use super::{grid::Grid, history::HistoryUniform};
 use crate::{
     depth::view::ViewUniform,
     lines::{
@@ -23,6 +23,6 @@ pub(crate) struct LinePassUniform {
     pub layers: LineLayersUniform,
     pub simplification: LineSimplificationUniform,
     pub boil: BoilUniform,
-    pub memory: MemoryUniform,
+    pub history: HistoryUniform,
     pub sheet: SheetUniform,
 }

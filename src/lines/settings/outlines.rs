@@ -256,9 +256,9 @@ impl Outlines {
         self.hysteresis > 0.0 && self.has_measured_creases()
     }
 
-    /// Whether lines stay where their edges have become weak. Without continuity there are
+    /// Whether lines stay where their edges have become weak. Without hysteresis there are
     /// no weak edges.
-    pub(crate) fn persists(&self) -> bool {
+    pub(crate) fn holds_lines(&self) -> bool {
         self.hold_frames > 0 && self.hysteresis > 0.0
     }
 

@@ -137,7 +137,7 @@ mod tests {
         *,
     };
 
-    /// Whether two surfaces meet at a crease does not depend on the form of silhouettes,
+    /// Whether two surfaces meet at a crease does not depend on the equations of silhouettes,
     /// nor on the threshold of the faithful equations.
     #[test]
     fn creases_are_the_same_beside_faithful_silhouettes() {

@@ -42,12 +42,12 @@ fn list_tiles(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let part = select(searched_by(g, first), inked_by(g, first), list == INKED);
     var listed = has_cracks(part.xy, part.zw, g.rect.zw);
-    let remembered = line_pass.memory.tile_frames;
-    if list == INKED && remembered > 0u {
-        // Lines that are missing in this frame are still remembered.
+    let tile_frames = line_pass.history.tile_frames;
+    if list == INKED && tile_frames > 0u {
+        // Lines that are missing in this frame are still in the history.
         let across = u32(size.x + TILE - 1) / u32(TILE);
         let tile = id.y * across + id.x;
-        let left = select(max(frames_left[tile], 1u) - 1u, remembered + 1u, listed);
+        let left = select(max(frames_left[tile], 1u) - 1u, tile_frames + 1u, listed);
         frames_left[tile] = left;
         listed = left > 0u;
     }

@@ -1,6 +1,7 @@
 //! Compares the crate's WGSL functions with their references, on random inputs and on
 //! edge cases.
 
+mod accumulate;
 mod ambient;
 mod art_map;
 mod bend;
@@ -32,7 +33,6 @@ mod proxy;
 mod ramp;
 mod ramp_map;
 mod rect;
-mod remember;
 mod ribbon;
 mod shadow_texels;
 mod sheet;

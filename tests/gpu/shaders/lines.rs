@@ -144,11 +144,11 @@ fn completing() -> Vec<Variant> {
         each("lines/link/density.wgsl", &["", "COARSE"]),
         each("lines/link/join.wgsl", &[""]),
         each("lines/link/corners.wgsl", &[""]),
-        each("lines/link/bridge.wgsl", &[""]),
+        each("lines/link/close_gaps.wgsl", &[""]),
         each("lines/tiles/tiles.wgsl", &[""]),
         each("lines/tiles/tile.wgsl", &[""]),
         each(
-            "lines/memory/persist.wgsl",
+            "lines/history/hold.wgsl",
             &["", "MOTION DEPTH", "MOTION DEPTH OBLIQUE"],
         ),
         pairs(
@@ -262,7 +262,7 @@ fn drawing() -> Vec<Variant> {
             &["OBJECT_STYLES", STORED],
             |names| names,
         ),
-        each("lines/memory/remember.wgsl", &["DEPTH", "DEPTH OBLIQUE"]),
+        each("lines/history/accumulate.wgsl", &["DEPTH", "DEPTH OBLIQUE"]),
     ]
     .concat()
 }

@@ -13,7 +13,7 @@ use super::{
     faithful::faithful,
     fold::placed,
     gaps::{gaps, source},
-    link::{Place, bend, joined, linked, without_specks},
+    link::{Place, bend, joined, linked, without_short_pieces},
     overshoot::{Stroke, strokes},
     rim::is_rim,
     sheet::{Sheet, Spot},
@@ -107,7 +107,7 @@ impl Cracks {
     }
 
     /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends are
-    /// extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
+    /// extended; `linked`: the cracks of all lines, short pieces included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),
@@ -160,7 +160,7 @@ impl Cracks {
 
     /// Closes gaps, leaves out the cracks that are not parts of lines, and bends the lines of the
     /// others. `all`: those that were found, and `sources` without ledges.
-    /// Returns the cracks of all lines, specks included.
+    /// Returns the cracks of all lines, short pieces included.
     fn complete(
         &mut self,
         (all, sources): (&HashMap<Place, Crack>, &HashMap<Place, Crack>),
@@ -171,7 +171,7 @@ impl Cracks {
         let mut linked = joined(&linked(all, steps), all);
         let closed = gaps(&linked, s.gap_closing);
         linked.extend(&closed);
-        let kept = without_specks(&linked, [self.width, self.height], min_length);
+        let kept = without_short_pieces(&linked, [self.width, self.height], min_length);
         let links = s.hysteresis > 0.0 || s.min_length > 1 || s.gap_closing > 0;
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
             for (side, slot) in cracks.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Reference of `lines/link/gaps.wgsl` and `lines/link/bridge.wgsl`: gaps in lines that are closed.
+//! Reference of `lines/link/gaps.wgsl` and `lines/link/close_gaps.wgsl`: gaps in lines that are closed.
 
 use std::collections::{HashMap, HashSet};
 

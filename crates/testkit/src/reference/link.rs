@@ -94,7 +94,11 @@ pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
 
 /// The cracks that are in pieces of at least `min_length` cracks, in pieces that branch or are
 /// closed, or in pieces that reach the border of a grid of this size.
-pub fn without_specks(linked: &HashSet<Place>, size: [i64; 2], min_length: u32) -> HashSet<Place> {
+pub fn without_short_pieces(
+    linked: &HashSet<Place>,
+    size: [i64; 2],
+    min_length: u32,
+) -> HashSet<Place> {
     let kept = linked.iter().filter(|place| {
         let piece = chain::piece(linked, **place, size);
         piece.is_none_or(|cracks| cracks >= min_length as usize)

@@ -1,6 +1,7 @@
 //! References of the shaders in double precision. A reference has the name of the WGSL file
 //! that it mirrors. It is written from the definition, not from the shader.
 
+pub mod accumulate;
 pub mod bend;
 pub mod black_flats;
 pub mod blue_noise;
@@ -50,7 +51,6 @@ pub mod range;
 pub mod raw;
 pub mod read;
 pub mod rect;
-pub mod remember;
 pub mod resolve;
 mod rim;
 pub mod screen;

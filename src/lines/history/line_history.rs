@@ -1,4 +1,4 @@
-//! The memory of lines under temporal anti-aliasing: see `remember.wgsl`.
+//! The history of lines under temporal anti-aliasing: see `accumulate.wgsl`.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -22,7 +22,7 @@ use bevy::{
 use crate::{
     gpu::entry,
     lines::{
-        request::{LinePassUniform, MemoryRequest},
+        request::{HistoryRequest, LinePassUniform},
         settings::Outlines,
         textures::{cleared, descriptor},
         tiles::{TileList, TileLists, tile_shader, vertices},
@@ -36,13 +36,13 @@ const DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 
 /// Selects the variant of the pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MemoryKey {
+pub(crate) struct HistoryKey {
     pub oblique: bool,
     /// Only the tiles with ink are drawn.
     pub tiled: bool,
 }
 
-impl MemoryKey {
+impl HistoryKey {
     pub fn layout() -> BindGroupLayoutDescriptor {
         let stages = ShaderStages::FRAGMENT;
         let float = |binding| {
@@ -56,7 +56,7 @@ impl MemoryKey {
             float(25),
             float(26),
         ];
-        BindGroupLayoutDescriptor::new("comics_remember_lines", &entries)
+        BindGroupLayoutDescriptor::new("comics_accumulate_lines", &entries)
     }
 
     fn defs(self) -> Vec<ShaderDefVal> {
@@ -66,36 +66,36 @@ impl MemoryKey {
 }
 
 #[derive(Resource)]
-pub(crate) struct MemoryPipeline {
+pub(crate) struct HistoryPipeline {
     fullscreen: FullscreenShader,
     tile: Handle<Shader>,
     shader: Handle<Shader>,
 }
 
-impl MemoryPipeline {
+impl HistoryPipeline {
     pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
         Self {
             fullscreen: fullscreen.clone(),
             tile: tile_shader(assets),
-            shader: load_embedded_asset!(assets, "remember.wgsl"),
+            shader: load_embedded_asset!(assets, "accumulate.wgsl"),
         }
     }
 }
 
-impl SpecializedRenderPipeline for MemoryPipeline {
-    type Key = MemoryKey;
+impl SpecializedRenderPipeline for HistoryPipeline {
+    type Key = HistoryKey;
 
-    fn specialize(&self, key: MemoryKey) -> RenderPipelineDescriptor {
+    fn specialize(&self, key: HistoryKey) -> RenderPipelineDescriptor {
         let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
         RenderPipelineDescriptor {
-            label: Some("comics_remember_lines".into()),
-            layout: vec![MemoryKey::layout()],
+            label: Some("comics_accumulate_lines".into()),
+            layout: vec![HistoryKey::layout()],
             vertex,
             primitive,
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
-                entry_point: Some("remember".into()),
+                entry_point: Some("accumulate".into()),
                 targets: [INK_FORMAT, DEPTH_FORMAT]
                     .map(|format| Some(format.into()))
                     .to_vec(),
@@ -111,24 +111,24 @@ struct Frame {
     depth: CachedTexture,
 }
 
-/// The memory of a view.
-pub(crate) struct LineMemory {
+/// The history of a view.
+pub(crate) struct LineHistory {
     size: UVec2,
     /// This frame and the one before.
     frames: [Frame; 2],
     cuts: u32,
     settings: Outlines,
-    /// Whether there is nothing in it yet.
+    /// Whether it is empty.
     pub is_new: bool,
 }
 
-impl LineMemory {
-    /// The memory for the next frame. `kept`: whether that of the last frame was drawn.
+impl LineHistory {
+    /// The history for the next frame. `kept`: whether that of the last frame was drawn.
     pub fn next(
         before: Option<Self>,
         kept: bool,
         device: &RenderDevice,
-        (request, size, settings): (&MemoryRequest, UVec2, &Outlines),
+        (request, size, settings): (&HistoryRequest, UVec2, &Outlines),
     ) -> Self {
         if let Some(mut before) = before.filter(|before| before.size == size) {
             before.frames.swap(0, 1);
@@ -140,8 +140,8 @@ impl LineMemory {
             return before;
         }
         let frame = || Frame {
-            ink: texture(device, "comics_remembered_ink", size, INK_FORMAT),
-            depth: texture(device, "comics_remembered_depth", size, DEPTH_FORMAT),
+            ink: texture(device, "comics_history_ink", size, INK_FORMAT),
+            depth: texture(device, "comics_history_depth", size, DEPTH_FORMAT),
         };
         Self {
             size,
@@ -175,7 +175,7 @@ impl LineMemory {
     ) {
         let [now, _] = &self.frames;
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_remember_lines"),
+            label: Some("comics_accumulate_lines"),
             color_attachments: &[Some(cleared(&now.ink)), Some(cleared(&now.depth))],
             ..Default::default()
         });

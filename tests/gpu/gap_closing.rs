@@ -11,10 +11,10 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(96, 64);
 
 /// Lines of a pixel, inside of the things that they belong to.
-fn thin(bridge: u32) -> Outlines {
+fn thin(gap_closing: u32) -> Outlines {
     Outlines {
         width: 1.0,
-        gap_closing: bridge,
+        gap_closing,
         ..Outlines::SILHOUETTES
     }
 }
@@ -66,9 +66,9 @@ fn a_wire_with_short_gaps_looks_like_a_whole_one() {
             assert!(before != whole);
             let pieces = fragments(&mask(&before), SIZE.x as usize, 1000);
             assert!(pieces >= 4);
-            for bridge in 1..=3 {
-                let found = mask(&small.outlined(thin(bridge)));
-                let is_closed = bridge >= gap;
+            for gap_closing in 1..=3 {
+                let found = mask(&small.outlined(thin(gap_closing)));
+                let is_closed = gap_closing >= gap;
                 let want = mask(if is_closed { &whole } else { &before });
                 let differ = found.iter().zip(want).filter(|(a, b)| **a != *b).count();
                 let parts = fragments(&found, SIZE.x as usize, 1000);
@@ -76,7 +76,7 @@ fn a_wire_with_short_gaps_looks_like_a_whole_one() {
                 let (most, want) = if is_closed { (8, 1) } else { (0, pieces) };
                 assert!(
                     differ <= most && parts == want,
-                    "upright {upright}, gap {gap}, bridge {bridge}: {differ}, {parts} of {want}"
+                    "upright {upright}, gap {gap}, gap_closing {gap_closing}: {differ}, {parts} of {want}"
                 );
             }
         }
@@ -103,11 +103,11 @@ fn thin_wires_at_small_angles_are_whole() {
                 Transform::from_xyz(0.31, 0.17, -100.0)
                     .with_rotation(Quat::from_rotation_z(f32::atan(slope) + turn)),
             );
-            let parts = |small: &mut Small, bridge| {
-                let picture = small.outlined(thin(bridge));
+            let parts = |small: &mut Small, gap_closing| {
+                let picture = small.outlined(thin(gap_closing));
                 fragments(&mask(&picture), SIZE.x as usize, 1000)
             };
-            let [open, closed] = [0, 3].map(|bridge| parts(&mut small, bridge));
+            let [open, closed] = [0, 3].map(|gap_closing| parts(&mut small, gap_closing));
             assert!(open >= 5, "{open}");
             assert_eq!(closed, 1, "slope {slope}, upright {upright}");
         }
@@ -135,10 +135,10 @@ fn closed_gaps_are_like_the_line_beside_them() {
                 saturate: 1.0,
             },
         ] {
-            let outlines = |bridge| Outlines {
+            let outlines = |gap_closing| Outlines {
                 width,
                 weight,
-                gap_closing: bridge,
+                gap_closing,
                 color,
                 ink_budget: 1.0,
                 ..Outlines::SILHOUETTES
@@ -189,12 +189,12 @@ fn closed_gaps_match_the_reference() {
 }
 
 #[test]
-#[ignore = "long: thin lines too; quick test bridge::closed_gaps_match_the_reference"]
+#[ignore = "long: thin lines too; quick test gap_closing::closed_gaps_match_the_reference"]
 fn closed_gaps_of_thin_lines_match_the_reference() {
     assert_closed_gaps(CLOSED);
 }
 
-/// Lengths of gaps, widths, weights, and continuity.
+/// Lengths of gaps, widths, weights, and hysteresis.
 const CLOSED: [(u32, f32, LineWeight, f32); 3] = [
     (3, 2.0, LineWeight::EVEN, 8.0),
     (2, 1.0, LineWeight::EVEN, 0.0),

@@ -1,17 +1,17 @@
-#define_import_path bevy_comics::lines::lives
+#define_import_path bevy_comics::lines::holds
 
-// For how many frames lines stay where their edges have become weak: their lives. Pure functions.
+// For how many frames lines are still held where their edges have become weak. Pure functions.
 //
-// A word has the lives of four pixels in a row, a byte for each: bits 0 to 3 are the life of the
+// A word has the holds of four pixels in a row, a byte for each: bits 0 to 3 are the hold of the
 // crack to the east, bits 4 to 7 that of the crack to the south.
 
 // The word of a pixel of a grid of this width.
-fn life_word(width: i32, p: vec2<i32>) -> i32 {
+fn hold_word(width: i32, p: vec2<i32>) -> i32 {
     return p.y * ((width + 3) >> 2u) + (p.x >> 2u);
 }
 
-// The first bit of the life of a crack in its word, see chain.wgsl.
-fn life_shift(crack: vec3<i32>) -> u32 {
+// The first bit of the hold of a crack in its word, see chain.wgsl.
+fn hold_shift(crack: vec3<i32>) -> u32 {
     return u32((crack.x & 3) * 8 + crack.z * 4);
 }
 
@@ -25,8 +25,8 @@ fn past_pixel(crack: vec3<i32>, scale: vec2<f32>, moved: vec2<f32>) -> vec2<i32>
     return vec2<i32>(floor(place - middle + 0.5));
 }
 
-// The life of a found crack: that of a line, or a frame less than in the last frame. `past`:
-// the longest life around it in the last frame.
-fn next_life(is_line: bool, past: u32, longest: u32) -> u32 {
+// The hold of a found crack: that of a line, or a frame less than in the last frame. `past`:
+// the longest hold around it in the last frame.
+fn next_hold(is_line: bool, past: u32, longest: u32) -> u32 {
     return select(max(past, 1u) - 1u, longest, is_line);
 }

@@ -1,4 +1,4 @@
-//! Reference of `lines/memory/remember.wgsl` and `lines/memory/memory.wgsl`: ink that remembers the
+//! Reference of `lines/history/accumulate.wgsl` and `lines/history/history.wgsl`: ink that is blended with that of the
 //! frames before.
 
 use super::{Rgb, edge::is_in_front};
@@ -71,19 +71,19 @@ pub struct Pixel {
     /// Those of the last frame at that place.
     pub past_nearest: f64,
     pub past_wide: f64,
-    /// Frames in the memory, frames with missing lines, and how unsteady the surface is.
+    /// Frames in the history, frames with missing lines, and how unsteady the surface is.
     pub counts: [f64; 3],
     /// Whether the last frame shows that place.
     pub seen: bool,
     /// Pixels that it moves by.
     pub speed: f64,
-    /// The fraction of this frame where lines move; 1: there is no memory.
+    /// The fraction of this frame where lines move; 1: there is no history.
     pub blend_factor: f64,
 }
 
-/// What is remembered of a pixel.
+/// What is kept of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Memory {
+pub struct Accumulated {
     pub ink: Rgb,
     /// Frames, frames with missing lines, and how unsteady the surface is.
     pub counts: [f64; 3],
@@ -92,7 +92,7 @@ pub struct Memory {
     pub covered: bool,
     pub uncovered: bool,
     pub vanished: bool,
-    /// Whether the memory was limited to the ink nearby.
+    /// Whether the history was limited to the ink nearby.
     pub limited: bool,
 }
 
@@ -107,8 +107,8 @@ impl Pixel {
         })
     }
 
-    /// The ink with its memory. `jump`: the difference that separates two surfaces at a raw depth.
-    pub fn remembered(&self, jump: impl Fn(f64) -> f64) -> Memory {
+    /// The ink with its history. `jump`: the difference that separates two surfaces at a raw depth.
+    pub fn accumulated(&self, jump: impl Fn(f64) -> f64) -> Accumulated {
         let before = |near: f64, far: f64| is_in_front(near, far, jump(near));
         let covered = before(self.nearest, self.past_wide);
         let uncovered = before(self.past_nearest, self.wide);
@@ -155,7 +155,7 @@ impl Pixel {
             };
             kept * (1.0 - blend_factor) + self.now[k] * blend_factor
         });
-        Memory {
+        Accumulated {
             ink,
             counts: [frames, if limited { 0.0 } else { missing }, unsteady],
             covered,

@@ -1,8 +1,8 @@
-//! Ink that remembers the frames before: whole pixels of the fragment shader, which is run as a
+//! Ink that is blended with that of the frames before: whole pixels of the fragment shader, which is run as a
 //! function.
 
 use bevy_comics_testkit::{
-    reference::remember::{At, Pixel, ROUNDING, inside, past_at, past_nearest, square},
+    reference::accumulate::{At, Pixel, ROUNDING, inside, past_at, past_nearest, square},
     wgsl::without_stage,
 };
 
@@ -184,7 +184,7 @@ impl Scene {
         let rows: Vec<[f32; 3]> = pixels()
             .flat_map(|[x, y]| [0, 1].map(|which| [x, y, which].map(|k| k as f32)))
             .collect();
-        let source = without_stage(&shader("lines/memory/remember.wgsl"));
+        let source = without_stage(&shader("lines/history/accumulate.wgsl"));
         let definitions = [("DEPTH", None)];
         let results = gpu().evaluate_bound(&definitions, &entries, &source, &self.body(), &rows);
         results.as_chunks::<2>().0.to_vec()
@@ -201,12 +201,12 @@ impl Scene {
             "line_pass.seen.viewport = vec4(5, 7, {width}, {height});
              line_pass.grid.rect = vec4({left}, {top}, {grid_width}, {grid_height});
              line_pass.grid.from_viewport = vec4({right:?}, {down:?}, -0.25, 0.25);
-             line_pass.memory.spacing = {spacing};
-             line_pass.memory.blend_factor = {blend_factor:?};
+             line_pass.history.spacing = {spacing};
+             line_pass.history.blend_factor = {blend_factor:?};
              line_pass.settings.jump = 0.25;
              line_pass.settings.reference_factor = {factor:?};
              line_pass.settings.reference_constant = {constant:?};
-             let found = remember(vec4(i(0u) + 0.5, i(1u) + 0.5, 0.0, 1.0));
+             let found = accumulate(vec4(i(0u) + 0.5, i(1u) + 0.5, 0.0, 1.0));
              if i(2u) == 0.0 {{ return found.ink; }}
              return vec4(found.nearest, 0.0, 0.0);"
         )
@@ -272,9 +272,9 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
             continue;
         }
         let [factor, constant] = scene.reference.map(f64::from);
-        let memory = pixel.remembered(|depth| 0.25 * (factor * depth + constant));
-        let what = format!("{at:?}: {pixel:?}, {memory:?}");
-        for (stored, want) in inks.into_iter().zip(memory.ink) {
+        let expected = pixel.accumulated(|depth| 0.25 * (factor * depth + constant));
+        let what = format!("{at:?}: {pixel:?}, {expected:?}");
+        for (stored, want) in inks.into_iter().zip(expected.ink) {
             let found = 1.0 - (1.0 - f64::from(stored)).powi(2);
             assert!((found - want).abs() < 1e-5, "{what}: {found}, not {want}");
         }
@@ -285,15 +285,15 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
             (&scene.past_ink, from)
         };
         assert_eq!(inks[3], slots[index(at)][3], "{what}");
-        let [frames, missing, unsteady] = memory.counts;
+        let [frames, missing, unsteady] = expected.counts;
         let count = frames.floor() + 256.0 * (missing + 32.0 * unsteady);
         let found = [depths[0], depths[1]].map(f64::from);
         assert_eq!(found, [pixel.nearest, count], "{what}");
         let happened = [
-            memory.covered,
-            memory.uncovered,
-            memory.vanished,
-            memory.limited,
+            expected.covered,
+            expected.uncovered,
+            expected.vanished,
+            expected.limited,
             !pixel.seen,
             unsteady > 32.0,
         ];
@@ -306,9 +306,9 @@ fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
 
 /// Views that stand still, drift, and move; with grids that are as fine as the picture, finer, and
 /// coarser, as an upscaler's; with jumps as in perspective and in an orthographic view; and without
-/// memory.
+/// history.
 #[test]
-fn remembered_pixels_match_the_reference() {
+fn accumulated_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
     let mut tally = [0; 6];
     for motions in [STILL, SLOW, MOVING] {

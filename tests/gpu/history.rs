@@ -1,4 +1,4 @@
-//! What lines remember under temporal anti-aliasing: they stand still, and leave no ghosts.
+//! The history of lines under temporal anti-aliasing: they stand still, and leave no ghosts.
 
 use crate::{
     line_scenes::{mean, turned},
@@ -73,7 +73,7 @@ fn only_tiles_that_had_lines_are_drawn() {
     assert!(tiles(&mut small) > 4.0);
     small.world().despawn(wall);
     small.headless.step(1);
-    assert!(tiles(&mut small) > 4.0, "lines are remembered");
+    assert!(tiles(&mut small) > 4.0, "lines are in the history");
     small.camera_settings().viewport = Some(Viewport {
         physical_size: UVec2::new(64, SIZE as u32),
         ..default()
@@ -368,12 +368,12 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 /// While the camera moves by a tenth of a pixel a frame, the width and the place of a line vary no
-/// more along it with a memory than without one: the memory reads the last frame between its
+/// more along it with a history than without one: the history reads the last frame between its
 /// pixels.
 #[test]
 fn a_slow_pan_keeps_lines_even() {
     let (mut small, _) = scene();
-    // Only what is remembered needs time, before the pan and at its start.
+    // Only the history needs time, before the pan and at its start.
     let [without, with] = [(0.0, 8, 17), (0.875, 24, 1)].map(|(history_weight, frames, first)| {
         small.insert(Transform::IDENTITY);
         outline(&mut small, history_weight, frames);

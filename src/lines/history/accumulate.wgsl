@@ -1,13 +1,13 @@
 // Mixes the ink of this frame with that of the frames before, under temporal anti-aliasing:
 // the engine moves depth by a part of a pixel in every frame, so lines, which follow the
-// borders of pixels, tremble. Only the tiles with ink are drawn; elsewhere, nothing is
-// remembered.
+// borders of pixels, move too. Only the tiles with ink are drawn; elsewhere, there is no
+// history.
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
-#import bevy_comics::lines::memory::{
-    cubic_weights, frames_at, is_limited, is_steady, missing_at, pack_counts, remembered, share_at,
-    unpack_counts, unsteady_at,
+#import bevy_comics::lines::history::{
+    accumulated, blend_factor_at, cubic_weights, frames_at, is_limited, is_steady, missing_at,
+    pack_counts, unpack_counts, unsteady_at,
 }
 #import bevy_comics::lines::pass::line_pass
 
@@ -21,7 +21,7 @@
 @group(0) @binding(25) var past_ink: texture_2d<f32>;
 @group(0) @binding(26) var past_depth: texture_2d<f32>;
 
-struct Remembered {
+struct Accumulated {
     @location(0) ink: vec4<f32>,
     @location(1) nearest: vec2<f32>,
 }
@@ -41,7 +41,7 @@ fn depths_around(centre: vec2<i32>) -> Around {
     var around = Around(0.0, -1.0, vec2(0));
     for (var i = 0; i < 25; i++) {
         let offset = vec2(i % 5 - 2, i / 5 - 2);
-        let at = rect.xy + clamp(centre + line_pass.memory.spacing * offset, vec2(0), rect.zw - 1);
+        let at = rect.xy + clamp(centre + line_pass.history.spacing * offset, vec2(0), rect.zw - 1);
         let d = texel_depth(at, 0);
         let beside = max(abs(offset.x), abs(offset.y)) < 2;
         around.nearest = max(around.nearest, select(0.0, d, beside));
@@ -78,7 +78,7 @@ fn past_at(place: vec2<f32>) -> vec3<f32> {
 // The nearest raw depth around a pixel of the last frame, as wide as `wide` of depths_around.
 fn past_nearest(p: vec2<i32>) -> f32 {
     let last = line_pass.seen.viewport.zw - 1;
-    let far = max(vec2<i32>(round(f32(line_pass.memory.spacing) / line_pass.grid.from_viewport.xy)), vec2(1));
+    let far = max(vec2<i32>(round(f32(line_pass.history.spacing) / line_pass.grid.from_viewport.xy)), vec2(1));
     var nearest = 0.0;
     for (var i = 0; i < 4; i++) {
         let corner = vec2(2 * (i & 1) - 1, 2 * (i >> 1u) - 1);
@@ -97,7 +97,7 @@ fn jump_at(d: f32) -> f32 {
 const ROUNDING: f32 = 0.01;
 
 @fragment
-fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
+fn accumulate(@builtin(position) position: vec4<f32>) -> Accumulated {
     set_view(line_pass.seen);
     let g = line_pass.grid;
     let size = line_pass.seen.viewport.zw;
@@ -126,12 +126,12 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let past_wide = past_nearest(from_pixel);
     let covered = is_in_front(around.nearest, past_wide, jump_at(around.nearest));
     let vanished = is_in_front(past_wide, around.wide, jump_at(past_wide));
-    let exists = seen && line_pass.memory.blend_factor < 1.0;
+    let exists = seen && line_pass.history.blend_factor < 1.0;
     var counted = select(vec3(0.0), unpack_counts(before.y), exists);
     let unsteady = unsteady_at(counted.z, covered || uncovered || vanished, speed);
     let steady = is_steady(unsteady);
     counted = select(counted, vec3(0.0), uncovered && steady);
-    let frames = frames_at(counted.x, line_pass.memory.blend_factor, speed);
+    let frames = frames_at(counted.x, line_pass.history.blend_factor, speed);
     let past = past_at(place);
     let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
     let missing = missing_at(counted.y, outside);
@@ -140,9 +140,9 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let limited = is_limited(missing, speed) || (steady && (covered || vanished || sky));
     let low = select(vec3(0.0), least, limited);
     let high = select(vec3(1.0), most, limited);
-    let ink = remembered(past, now, low, high, share_at(frames, speed));
+    let ink = accumulated(past, now, low, high, blend_factor_at(frames, speed));
     let count = pack_counts(frames, select(missing, 0.0, limited), unsteady);
     // The slot of the strongest line of this frame; where it has none, that of the last one.
     let slot = select(textureLoad(past_ink, from_pixel, 0).w, texel.w, any(now > vec3(0.0)));
-    return Remembered(vec4(encode_ink(ink), slot), vec2(around.nearest, count));
+    return Accumulated(vec4(encode_ink(ink), slot), vec2(around.nearest, count));
 }

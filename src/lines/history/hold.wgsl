@@ -8,7 +8,7 @@
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
-#import bevy_comics::lines::lives::{life_shift, life_word, next_life, past_pixel}
+#import bevy_comics::lines::holds::{hold_shift, hold_word, next_hold, past_pixel}
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
     CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
@@ -22,17 +22,17 @@
 #endif
 
 @group(0) @binding(21) var<storage, read_write> linked: array<atomic<u32>>;
-// Lives in the last frame, and in this one.
-@group(0) @binding(28) var<storage> past_lives: array<u32>;
-@group(0) @binding(29) var<storage, read_write> lives: array<u32>;
+// Frames for which cracks are held: in the last frame, and in this one.
+@group(0) @binding(28) var<storage> past_holds: array<u32>;
+@group(0) @binding(29) var<storage, read_write> holds: array<u32>;
 
-// The life of a crack of the last frame's grid; 0 outside of it.
-fn past_life(g: Grid, crack: vec3<i32>) -> u32 {
+// The hold of a crack of the last frame's grid; 0 outside of it.
+fn past_hold(g: Grid, crack: vec3<i32>) -> u32 {
     let size = g.past_size;
     let inside = all(crack.xy >= vec2(0)) && all(crack.xy < size);
     let p = clamp(crack, vec3(0), vec3(size - 1, 1));
-    let life = (past_lives[life_word(size.x, p.xy)] >> life_shift(p)) & 15u;
-    return select(0u, life, inside);
+    let hold = (past_holds[hold_word(size.x, p.xy)] >> hold_shift(p)) & 15u;
+    return select(0u, hold, inside);
 }
 
 // Whether a crack is found in this frame.
@@ -44,8 +44,8 @@ fn is_found(g: Grid, crack: vec3<i32>) -> bool {
     return inside && ((word >> u32(p.y & 31)) & 1u) != 0u;
 }
 
-// The longest life in the last frame of a crack, and of those beside it that have gone.
-fn life_around(g: Grid, crack: vec3<i32>) -> u32 {
+// The longest hold in the last frame of a crack, and of those beside it that have gone.
+fn hold_around(g: Grid, crack: vec3<i32>) -> u32 {
     let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
     let past_size = vec2<f32>(g.past_size);
     var moved = vec2(0.0);
@@ -56,18 +56,18 @@ fn life_around(g: Grid, crack: vec3<i32>) -> u32 {
     moved = textureLoad(motion_texture, owner, 0).xy * past_size;
 #endif
     let from_pixel = past_pixel(crack, past_size / vec2<f32>(g.rect.zw), moved);
-    var life = past_life(g, vec3(from_pixel, crack.z));
+    var hold = past_hold(g, vec3(from_pixel, crack.z));
     if !is_found(g, vec3(crack.xy - across, crack.z)) {
-        life = max(life, past_life(g, vec3(from_pixel - across, crack.z)));
+        hold = max(hold, past_hold(g, vec3(from_pixel - across, crack.z)));
     }
     if !is_found(g, vec3(crack.xy + across, crack.z)) {
-        life = max(life, past_life(g, vec3(from_pixel + across, crack.z)));
+        hold = max(hold, past_hold(g, vec3(from_pixel + across, crack.z)));
     }
-    return life;
+    return hold;
 }
 
-// Adds the cracks of a cell's column that are kept to the lines. `rows`: the lives of each row.
-fn persist_column(g: Grid, first: vec2<i32>, side: i32, rows: ptr<function, array<u32, CELL_ROWS>>) {
+// Adds the cracks of a cell's column that are kept to the lines. `rows`: the holds of each row.
+fn hold_column(g: Grid, first: vec2<i32>, side: i32, rows: ptr<function, array<u32, CELL_ROWS>>) {
     let band = first.y >> 5u;
     let from_top = u32(first.y & 31);
     let plane = column_word(g, select(LINKED_EAST, LINKED_SOUTH, side == 1), first.x, band);
@@ -82,10 +82,10 @@ fn persist_column(g: Grid, first: vec2<i32>, side: i32, rows: ptr<function, arra
         let is_line = ((lines >> row) & 1u) != 0u;
         var past = 0u;
         if !is_line {
-            past = life_around(g, crack);
+            past = hold_around(g, crack);
         }
-        let life = next_life(is_line, past, u32(g.hold_frames));
-        (*rows)[row] |= life << life_shift(crack);
+        let hold = next_hold(is_line, past, u32(g.hold_frames));
+        (*rows)[row] |= hold << hold_shift(crack);
         if past > 0u {
             kept |= 1u << row;
             if side == 1 {
@@ -99,7 +99,7 @@ fn persist_column(g: Grid, first: vec2<i32>, side: i32, rows: ptr<function, arra
 }
 
 @compute @workgroup_size(32)
-fn persist(
+fn hold_lines(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) place: u32,
 ) {
@@ -115,13 +115,13 @@ fn persist(
     for (var i = 0; i < COLUMNS; i++) {
         let first = cell + vec2(i, 0);
         if first.x < g.rect.z {
-            persist_column(g, first, 0, &rows);
-            persist_column(g, first, 1, &rows);
+            hold_column(g, first, 0, &rows);
+            hold_column(g, first, 1, &rows);
         }
     }
     for (var row = 0; row < CELL_ROWS; row++) {
         if cell.y + row < g.rect.w {
-            lives[life_word(g.rect.z, cell + vec2(0, row))] = rows[row];
+            holds[hold_word(g.rect.z, cell + vec2(0, row))] = rows[row];
         }
     }
 }

@@ -42,7 +42,7 @@ fn store_column(g: Grid, first: vec2<i32>, side: i32, rows: u32) {
 }
 
 @compute @workgroup_size(32)
-fn bridge(
+fn close_gaps(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) place: u32,
 ) {

@@ -246,7 +246,7 @@ fn lines_follow_motion_vectors() {
 }
 
 #[test]
-#[ignore = "long: more speeds; quick test persistence::lines_follow_motion_vectors"]
+#[ignore = "long: more speeds; quick test hold_frames::lines_follow_motion_vectors"]
 fn lines_follow_motion_vectors_whatever_their_speed() {
     for is_level in [false, true] {
         assert_follow(is_level, &[5.0, -3.3]);

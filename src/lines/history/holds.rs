@@ -1,4 +1,4 @@
-//! Lines that stay for some frames where their edges have become weak: see `persist.wgsl`.
+//! Lines that stay for some frames where their edges have become weak: see `hold.wgsl`.
 
 use bevy::{
     math::UVec2,
@@ -13,7 +13,7 @@ use crate::{
     lines::{request::LineRequest, settings::Outlines},
 };
 
-/// The lives of a frame, for a grid of a size.
+/// The holds of a frame, for a grid of a size.
 struct Frame {
     size: UVec2,
     buffer: Buffer,
@@ -26,13 +26,13 @@ impl Frame {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         Self {
             size,
-            buffer: buffer(device, "comics_line_lives", bytes, usage),
+            buffer: buffer(device, "comics_line_holds", bytes, usage),
         }
     }
 }
 
-/// The lives of a view's lines, see `lives.wgsl`.
-pub(crate) struct LineLives {
+/// The holds of a view's lines, see `holds.wgsl`.
+pub(crate) struct LineHolds {
     /// This frame and the one before. The size of the main pass may have changed between them.
     frames: [Frame; 2],
     cuts: u32,
@@ -41,8 +41,8 @@ pub(crate) struct LineLives {
     is_new: bool,
 }
 
-impl LineLives {
-    /// The lives for the next frame. `kept`: whether the passes of the last frame ran.
+impl LineHolds {
+    /// The holds for the next frame. `kept`: whether the passes of the last frame ran.
     pub fn next(
         before: Option<Self>,
         kept: bool,
@@ -89,7 +89,7 @@ impl LineLives {
         }
     }
 
-    /// The bindings of `persist.wgsl`: the last frame, and this one.
+    /// The bindings of `hold.wgsl`: the last frame, and this one.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
         let [now, past] = &self.frames;
         [

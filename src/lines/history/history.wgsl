@@ -1,23 +1,23 @@
-#define_import_path bevy_comics::lines::memory
+#define_import_path bevy_comics::lines::history
 
-// How lines remember the frames before, under temporal anti-aliasing. Pure functions.
+// How lines are blended with the frames before, under temporal anti-aliasing. Pure functions.
 
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
-struct Memory {
-    // Fraction of this frame where lines move; 1: there is no memory.
+struct History {
+    // Fraction of this frame where lines move; 1: there is no history.
     blend_factor: f32,
     // Pixels of the grid between the depths that are compared.
     spacing: i32,
-    // Frames for which tiles are drawn that have no cracks any more; 0: there is no memory.
+    // Frames for which tiles are drawn that have no cracks any more; 0: there is no history.
     tile_frames: u32,
     unused: u32,
 }
 
-// Faster lines are as sharp as without a memory, in pixels per frame.
+// Faster lines are as sharp as without a history, in pixels per frame.
 const FASTEST: f32 = 4.0;
 // Slower lines stand still.
 const STILL: f32 = 0.05;
-// Frames that the memory of lines that stand still is the mean of: some rounds of the engine's
+// Frames that the history of lines that stand still is the mean of: some rounds of the engine's
 // offsets.
 const LONGEST: f32 = 128.0;
 
@@ -25,13 +25,13 @@ const LONGEST: f32 = 128.0;
 // edges are only found at some of the offsets.
 const MISSING: f32 = 16.0;
 
-// The number of frames in a row in which the memory was not between the least and the largest ink
+// The number of frames in a row in which the history was not between the least and the largest ink
 // nearby. `is_missing`: whether it is not in this frame.
 fn missing_at(before: f32, is_missing: bool) -> f32 {
     return select(0.0, before + 1.0, is_missing);
 }
 
-// Whether the memory is limited to the ink nearby in this frame: where lines move, or have been
+// Whether the history is limited to the ink nearby in this frame: where lines move, or have been
 // missing for long.
 fn is_limited(missing: f32, speed: f32) -> bool {
     return missing > MISSING || speed > STILL;
@@ -49,7 +49,7 @@ fn is_steady(unsteady: f32) -> bool {
     return unsteady <= 2.0 * MISSING;
 }
 
-// Three whole numbers in one, and back: frames in the memory, frames with missing lines, and
+// Three whole numbers in one, and back: frames in the history, frames with missing lines, and
 // how unsteady the nearest surface is.
 fn pack_counts(frames: f32, missing: f32, unsteady: f32) -> f32 {
     return floor(frames) + 256.0 * (missing + 32.0 * unsteady);
@@ -61,14 +61,14 @@ fn unpack_counts(packed: f32) -> vec3<f32> {
     return vec3(packed - 256.0 * upper, upper - 32.0 * unsteady, unsteady);
 }
 
-// The number of frames in the memory, this one included, from that of the last frame. Where
+// The number of frames in the history, this one included, from that of the last frame. Where
 // lines move, there are fewer.
 fn frames_at(before: f32, blend_factor: f32, speed: f32) -> f32 {
     return min(before + 1.0, select(LONGEST, 1.0 / blend_factor, speed > STILL));
 }
 
 // The fraction of this frame where lines move by `speed` pixels per frame.
-fn share_at(frames: f32, speed: f32) -> f32 {
+fn blend_factor_at(frames: f32, speed: f32) -> f32 {
     return min(1.0 / max(frames, 1.0) + speed / FASTEST, 1.0);
 }
 
@@ -84,8 +84,8 @@ fn cubic_weights(f: f32) -> vec4<f32> {
     );
 }
 
-// Ink of three kinds from that in the memory and that of this frame. The memory is limited to
+// Ink of three kinds from that in the history and that of this frame. The history is limited to
 // `least` and `most`.
-fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, blend_factor: f32) -> vec3<f32> {
+fn accumulated(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, blend_factor: f32) -> vec3<f32> {
     return mix(clamp(past, least, most), now, blend_factor);
 }
