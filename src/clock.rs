@@ -19,7 +19,7 @@ pub(crate) fn drawing(seconds: f64, rate: f32) -> u64 {
 }
 
 /// The number as a seed for shaders. It repeats after 65536 drawings.
-pub(crate) fn drawing_seed(seconds: f64, rate: f32) -> u32 {
+pub(crate) fn animation_seed(seconds: f64, rate: f32) -> u32 {
     (drawing(seconds, rate) % 65536) as u32
 }
 
@@ -45,6 +45,6 @@ mod tests {
         assert_eq!(drawing(-5.0, 12.0), 0);
         assert_eq!(drawing(f64::NAN, 12.0), 0);
         assert_eq!(drawing(3.0, 60.0), 180);
-        assert_eq!(drawing_seed(65537.0, 1.0), 1);
+        assert_eq!(animation_seed(65537.0, 1.0), 1);
     }
 }

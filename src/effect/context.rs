@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Mat4, UVec2, UVec4, Vec2, Vec3};
 
-use crate::{clock::drawing_seed, lines::Sheet};
+use crate::{clock::animation_seed, lines::Sheet};
 
 /// The view that an effect is drawn on, for the choice of its shader variants and for its uniform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +89,6 @@ impl EffectContext {
     /// All effects that use the same rate change in the same frame, and stand still while the
     /// game's clock does.
     pub fn animation_seed(&self, rate: f32) -> u32 {
-        drawing_seed(self.seconds, rate)
+        animation_seed(self.seconds, rate)
     }
 }

@@ -11,13 +11,13 @@ use crate::{
 };
 
 /// Paper that changes nothing but the edges of ink.
-fn plain(spread: f32, dry_brush: f32) -> Paper {
+fn plain(ink_bleed: f32, dry_brush: f32) -> Paper {
     Paper {
         grain: 0.0,
         shading: 0.0,
         size: 0.5,
         color: Color::WHITE,
-        ink_bleed: spread,
+        ink_bleed,
         dry_brush,
         ..default()
     }
@@ -104,8 +104,8 @@ fn widths(small: &mut Small, width: f32, paper: Paper) -> Vec<f64> {
 }
 
 /// Truth: lines keep their mean width within 0.05 pixels, and edges deviate as the height of the
-/// sheet does: by about 0.4 times half the spread. Four lines have eight edges, which are
-/// independent. Lines that are thin for the spread are nowhere without ink.
+/// sheet does: by about 0.4 times half the ink bleed. Four lines have eight edges, which are
+/// independent. Lines that are thin for the ink bleed are nowhere without ink.
 #[test]
 fn lines_keep_their_mean_width_on_paper() {
     lines_keep_their_mean_width(
@@ -138,15 +138,15 @@ fn lines_keep_their_mean_width(smooth: &[f32], rough: &[(f32, f32)]) {
         assert!((mean(&smooth) - f64::from(width)).abs() < 0.05);
         assert!(deviation(&smooth) < 0.01);
     }
-    for &(width, spread) in rough {
-        let rows = widths(&mut small, width, plain(spread, 0.0));
+    for &(width, ink_bleed) in rough {
+        let rows = widths(&mut small, width, plain(ink_bleed, 0.0));
         let (mean, deviation) = (mean(&rows), deviation(&rows));
-        let edge = f64::from((0.5 * spread).min(0.375 * width)) * 0.4;
+        let edge = f64::from((0.5 * ink_bleed).min(0.375 * width)) * 0.4;
         // The edges of a line of at most a pixel have the same height.
         let together = if width < 1.5 { 1.0 } else { 2.0 };
         let want = 2.0 * edge / f64::sqrt(4.0 * together);
         let width = f64::from(width);
-        let what = format!("{width}, {spread}: {mean}, {deviation}, {want}");
+        let what = format!("{width}, {ink_bleed}: {mean}, {deviation}, {want}");
         assert!((mean - width).abs() < 0.05, "{what}");
         assert!((0.5..1.6).contains(&(deviation / want)), "{what}");
         assert!(rows.iter().all(|row| *row > 0.2 * width), "{what}");
@@ -215,8 +215,8 @@ fn dots_keep_their_mean_tone(cases: impl Iterator<Item = (f32, ScreenShape)>) {
             mode: HalftoneMode::Spot,
             ..ideal()
         };
-        let mut shown = |spread: f32| {
-            let style = ComicStyle::new().with(halftone).with(plain(spread, 0.0));
+        let mut shown = |ink_bleed: f32| {
+            let style = ComicStyle::new().with(halftone).with(plain(ink_bleed, 0.0));
             small.style(&style).settle();
             let (_, after) = small.pass();
             let reds = after.pixels.iter().map(|p| f64::from(p[0]));

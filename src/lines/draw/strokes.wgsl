@@ -56,7 +56,7 @@ fn corner(
     let a = in_viewport(segment.xy);
     let b = in_viewport(segment.zw);
     let margin = unpack_width(line.x >> 20u) + 1.0 + line_pass.boil.amplitude
-        + 0.5 * line_pass.sheet.spread;
+        + 0.5 * line_pass.sheet.ink_bleed;
     let far = vec2<f32>(vec2(index & 1u, index >> 1u));
     let place = mix(min(a, b) - margin, max(a, b) + margin, far);
     let size = vec2<f32>(line_pass.seen.viewport.zw);

@@ -11,7 +11,7 @@ struct Sheet {
     // The corner of the viewport, in physical pixels from that of the sheet.
     origin: vec2<f32>,
     // Width of the band in which edges of ink vary, in physical pixels.
-    spread: f32,
+    ink_bleed: f32,
     dry_brush: f32,
     // Places on the sheet per physical pixel.
     scale: f32,
@@ -38,7 +38,7 @@ fn height_under(s: Sheet, place: vec2<f32>) -> f32 {
 // Half the width with which a line covers a place where the sheet has a height: ink runs into
 // valleys.
 fn spread_width(s: Sheet, half_width: f32, height: f32) -> f32 {
-    return half_width - min(0.5 * s.spread, MOST_SPREAD * half_width) * height;
+    return half_width - min(0.5 * s.ink_bleed, MOST_SPREAD * half_width) * height;
 }
 
 // Noise that is stretched along the direction of a number.

@@ -7,7 +7,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    clock::drawing_seed,
+    clock::animation_seed,
     settings::{BlendField, FieldRange, impl_sanitized},
 };
 
@@ -65,7 +65,7 @@ impl LineBoil {
         BoilUniform {
             amplitude: self.limited(widest) * scale,
             wavelength: self.wavelength * scale,
-            drawing: drawing_seed(seconds, self.rate),
+            animation_seed: animation_seed(seconds, self.rate),
             unused: 0,
         }
     }
@@ -84,6 +84,6 @@ impl Default for LineBoil {
 pub(crate) struct BoilUniform {
     pub amplitude: f32,
     wavelength: f32,
-    drawing: u32,
+    animation_seed: u32,
     unused: u32,
 }

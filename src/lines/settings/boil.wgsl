@@ -11,7 +11,7 @@ struct Boil {
     amplitude: f32,
     wavelength: f32,
     // Number of the drawing: seeds the noise.
-    drawing: u32,
+    animation_seed: u32,
     unused: u32,
 }
 
@@ -19,6 +19,6 @@ struct Boil {
 // pixels from its corner.
 fn boiled(b: Boil, at: vec2<f32>) -> vec2<f32> {
     let p = at / b.wavelength;
-    let seed = 0x6c696e65u + b.drawing * 2u;
+    let seed = 0x6c696e65u + b.animation_seed * 2u;
     return at + b.amplitude * vec2(wave(p, seed), wave(p, seed + 1u));
 }

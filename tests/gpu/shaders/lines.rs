@@ -224,7 +224,7 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
     names
 }
 
-/// What draws ink, reads samples, and remembers.
+/// What draws ink, reads samples, and keeps the history.
 fn drawing() -> Vec<Variant> {
     const STROKES: &[&str] = &[
         "| OBJECT_STYLES",

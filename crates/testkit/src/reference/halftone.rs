@@ -237,7 +237,7 @@ pub fn halftone(s: &Halftone, picture: Rgba, at: [f64; 2], d: f64, cells: &Cells
     let place = [0, 1].map(|i| at[i] - cells.centre[i]);
     let k = std::array::from_fn(|i| {
         let plate = Plate {
-            ink_bleed: 0.5 * cells.sheet.spread,
+            ink_bleed: 0.5 * cells.sheet.ink_bleed,
             height: cells.sheet.under(at).height,
             ..Plate::all(s, 1.0)[i]
         };

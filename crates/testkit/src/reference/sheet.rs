@@ -33,7 +33,7 @@ pub fn bristles(dry: f64, noise: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
     /// Width in physical pixels of the band in which edges vary.
-    pub spread: f64,
+    pub ink_bleed: f64,
     pub dry_brush: f64,
     /// Physical pixels per place on the sheet.
     pub grain: f64,
@@ -45,7 +45,7 @@ pub struct Sheet {
 impl Sheet {
     /// Smooth and wet.
     pub const SMOOTH: Self = Self {
-        spread: 0.0,
+        ink_bleed: 0.0,
         dry_brush: 0.0,
         grain: 1.0,
         unit: 1.0,
@@ -55,7 +55,7 @@ impl Sheet {
     /// The sheet of an effect at a scale factor.
     pub fn new(paper: &Paper, scale: f64, seed: u32) -> Self {
         Self {
-            spread: f64::from(paper.amount) * f64::from(paper.ink_bleed) * scale,
+            ink_bleed: f64::from(paper.amount) * f64::from(paper.ink_bleed) * scale,
             dry_brush: f64::from(paper.amount) * f64::from(paper.dry_brush),
             grain: f64::from(paper.size) * scale,
             unit: scale,
@@ -74,7 +74,7 @@ impl Sheet {
 
     /// The largest half width of a line anywhere. `half_width`: on a smooth sheet.
     pub fn largest(&self, half_width: f64) -> f64 {
-        half_width + (0.5 * self.spread).min(0.75 * half_width)
+        half_width + (0.5 * self.ink_bleed).min(0.75 * half_width)
     }
 
     /// Noise that is stretched along one of 16 directions.
