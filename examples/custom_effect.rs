@@ -23,7 +23,7 @@ struct Rain {
     /// Degrees from straight down to the right. Range -60 to 60, default -8.
     #[reflect(@FieldRange::linear(-60.0, 60.0).unit("°"))]
     slant: f32,
-    /// Colour of the drops. Default: a light, bluish grey.
+    /// Color of the drops. Default: a light, bluish gray.
     #[serde(with = "bevy_comics::effect::color_serde")]
     color: Color,
 }

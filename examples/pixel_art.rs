@@ -49,7 +49,7 @@ fn picture(mut commands: Commands, mut images: ResMut<Assets<Image>>, assets: Re
             },
             ..OrthographicProjection::default_3d()
         }),
-        // No greys at edges, and no dither between two tones.
+        // No grays at edges, and no dither between two tones.
         (Msaa::Off, Tonemapping::None, DebandDither::Disabled),
         Comic(assets.load(presets::PIXEL.path())),
     ));

@@ -236,10 +236,10 @@ fn speak(sheet: &mut ChildSpawnerCommands, balloon: &Balloon, speech: &mut Asset
     let body = Rect::from_center_half_size(middle, half);
     let place = body.union_point(balloon.tip.into()).inflate(1.0);
     let part = |p: Vec2| (p - place.min) / place.size();
-    let (centre, tip) = (part(middle), part(balloon.tip.into()));
+    let (center, tip) = (part(middle), part(balloon.tip.into()));
     let half = half / place.size();
     let material = speech.add(Speech {
-        body: Vec4::new(centre.x, centre.y, half.x, half.y),
+        body: Vec4::new(center.x, center.y, half.x, half.y),
         tail: Vec4::new(tip.x, tip.y, 16.0, balloon.spikes),
     });
     sheet.spawn((at(place), MaterialNode(material)));

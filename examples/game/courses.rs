@@ -27,7 +27,7 @@ pub struct Level {
     pub caption: &'static str,
     pub scene: BuiltIn,
     pub preset: Preset,
-    /// Colour of what is in shadow, as a factor of the sun's light; `None` where lamps light the
+    /// Color of what is in shadow, as a factor of the sun's light; `None` where lamps light the
     /// place.
     shade: Option<(f32, f32, f32)>,
     /// Points of a closed line, in the order of flight. Heights are above the ground.
@@ -185,7 +185,7 @@ impl Level {
         })
     }
 
-    /// Flat light, and shadows in the colour of the place.
+    /// Flat light, and shadows in the color of the place.
     pub fn light(&self) -> ToonLight {
         let ramp = self.shade.map(|(red, green, blue)| {
             let shade = RampStop::new(0.0, Color::srgb(red, green, blue));

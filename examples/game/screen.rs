@@ -19,7 +19,7 @@ impl Plugin for ScreenPlugin {
 #[derive(Component)]
 struct Status;
 
-/// The box at the bottom centre: title, pause, results.
+/// The box at the bottom center: title, pause, results.
 #[derive(Component)]
 struct Notice;
 

@@ -50,25 +50,25 @@ impl Solids {
     }
 
     /// The shortest way out of the nearest surface for a ball that touches it.
-    pub fn way_out(&self, centre: Vec3, radius: f32) -> Option<Vec3> {
+    pub fn way_out(&self, center: Vec3, radius: f32) -> Option<Vec3> {
         let grid = &*self.0;
         if grid.triangles.is_empty() {
             return None;
         }
         let reach = Vec3::splat(radius);
-        let nearest = cells_between(centre - reach, centre + reach, grid.cell)
+        let nearest = cells_between(center - reach, center + reach, grid.cell)
             .filter_map(|at| grid.cells.get(&at))
             .flatten()
             .map(|index| {
                 let triangle = &grid.triangles[*index as usize];
-                (closest_point(centre, triangle), triangle)
+                (closest_point(center, triangle), triangle)
             })
             .min_by(|(a, _), (b, _)| {
-                let distance = |p: &Vec3| p.distance_squared(centre);
+                let distance = |p: &Vec3| p.distance_squared(center);
                 distance(a).total_cmp(&distance(b))
             });
         let (point, [a, b, c]) = nearest?;
-        let away = centre - point;
+        let away = center - point;
         let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
         (away.length() < radius)
             .then(|| away.normalize_or(normal) * (radius - away.length()).max(1e-4))
@@ -155,10 +155,10 @@ mod tests {
     fn a_ball_leaves_a_wall_on_its_own_side() {
         let solids = Solids::new(wall(), 1.5);
         for side in [-1.0, 1.0] {
-            let centre = Vec3::new(1.0, 2.0, 0.3 * side);
-            let way = solids.way_out(centre, 0.5).expect("it touches the wall");
+            let center = Vec3::new(1.0, 2.0, 0.3 * side);
+            let way = solids.way_out(center, 0.5).expect("it touches the wall");
             assert!((way - Vec3::Z * 0.2 * side).length() < 1e-4, "{way}");
-            assert!(solids.way_out(centre + way * 1.01, 0.5).is_none());
+            assert!(solids.way_out(center + way * 1.01, 0.5).is_none());
         }
     }
 

@@ -66,9 +66,9 @@ pub struct Impact {
     pub alternate: bool,
     /// The tones. Default: black and white.
     pub tones: TwoTone,
-    /// The lines over the tones; every drawing has others. Lines in the colour of one tone
+    /// The lines over the tones; every drawing has others. Lines in the color of one tone
     /// have that of the other one where the tones are exchanged. `None`: no lines. Default:
-    /// focus lines in the colour of the dark tone.
+    /// focus lines in the color of the dark tone.
     pub lines: Option<SpeedLines>,
 }
 

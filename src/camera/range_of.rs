@@ -22,7 +22,7 @@ use crate::style::Comic;
 /// and without compute shaders, the camera measures its own range.
 ///
 /// The camera's own [`DepthMap`](crate::DepthMap) says how the range is mapped; its `smoothing` and
-/// `locked` have no effect. Equal colours need equal mappings.
+/// `locked` have no effect. Equal colors need equal mappings.
 /// [`DepthHistogram`](crate::depth::DepthHistogram) and
 /// [`VisibleDepthRange`](crate::depth::VisibleDepthRange) of the camera count what it sees itself,
 /// and so do [`DepthLayers`](crate::DepthLayers).

@@ -38,7 +38,7 @@ pub(super) fn warn_unsupported(
     }
     for (camera, target) in &targets {
         if matches!(target, RenderTarget::None { .. }) {
-            warn_once!("{camera} has no colour target: its effects are not drawn");
+            warn_once!("{camera} has no color target: its effects are not drawn");
         }
     }
 }

@@ -15,7 +15,7 @@ struct Composite {
     unused: vec2<f32>,
 }
 
-// Mixes the two pictures, or shows the original left of the split. Both are colours
+// Mixes the two pictures, or shows the original left of the split. Both are colors
 // multiplied by their opacity, and the opacity. `x` is in physical pixels from the left
 // edge of the viewport.
 fn compare(s: Composite, original: vec4<f32>, styled: vec4<f32>, x: f32) -> vec4<f32> {
@@ -36,7 +36,7 @@ fn range_fraction(frame: DepthFrame, raw: f32) -> f32 {
     return clamp((raw - frame.far) / span, 0.0, 1.0);
 }
 
-// A random colour for an object id, in display codes; black for id 0 (no object).
+// A random color for an object id, in display codes; black for id 0 (no object).
 fn object_color(id: u32) -> vec3<f32> {
     if id == 0u {
         return vec3(0.0);
@@ -46,7 +46,7 @@ fn object_color(id: u32) -> vec3<f32> {
     return 0.2 + 0.8 * vec3<f32>(bytes) / 255.0;
 }
 
-// Difference of two colours, times four; all in display codes.
+// Difference of two colors, times four; all in display codes.
 fn difference(original: vec3<f32>, styled: vec3<f32>) -> vec3<f32> {
     return min(4.0 * abs(styled - original), vec3(1.0));
 }

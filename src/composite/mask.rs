@@ -11,11 +11,11 @@ use bevy::{
 /// effects of the second camera would change the comic of the first one again.
 ///
 /// Lines are not masked, because half of a line lies outside its object. Effects that change all
-/// pixels are: tones, colours, prints and paper.
+/// pixels are: tones, colors, prints and paper.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub enum StyleMask {
-    /// As [`Own`](Self::Own), if the camera clears no colour ([`ClearColorConfig::None`]) and draws
+    /// As [`Own`](Self::Own), if the camera clears no color ([`ClearColorConfig::None`]) and draws
     /// over an active camera of lower order that has effects; otherwise as
     /// [`Picture`](Self::Picture).
     ///

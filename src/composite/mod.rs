@@ -76,11 +76,11 @@ pub enum DebugView {
     /// Raw depth of the buffer, scaled to the range: white is the near end, black is
     /// the far end and where there is no geometry.
     RawRange,
-    /// Ink of the silhouettes before colour and opacity: black on white.
+    /// Ink of the silhouettes before color and opacity: black on white.
     Silhouettes,
-    /// Ink of the creases before colour and opacity: black on white.
+    /// Ink of the creases before color and opacity: black on white.
     Creases,
-    /// A random colour for every object; black is no object. Needs the crate's
+    /// A random color for every object; black is no object. Needs the crate's
     /// feature `objects`.
     ObjectIds,
     /// Saturation that [`Desaturation`](crate::Desaturation) leaves: white is all,

@@ -123,7 +123,7 @@ mod tests {
             a > b
         }
 
-        /// Raw depth of the nearest sample of a pixel; samples are counted from its centre.
+        /// Raw depth of the nearest sample of a pixel; samples are counted from its center.
         fn depth(&self, view: &View, [x, y]: [f64; 2], samples: &[[f64; 2]]) -> f64 {
             let depths = samples.iter().map(|[dx, dy]| {
                 let at = [x + dx, y + dy];

@@ -87,7 +87,7 @@ pub struct DepthMap {
     /// in `docs/report`.
     pub smoothing: Option<RangeSmoothing>,
     /// Holds the visible range, whatever enters or leaves the view, until this is
-    /// `false` again: for a scene whose colours must not change, or a photograph.
+    /// `false` again: for a scene whose colors must not change, or a photograph.
     /// Default: `false`.
     ///
     /// If the camera has not seen any geometry yet, it holds the range of the first
@@ -148,7 +148,7 @@ pub enum DepthMapping {
     #[default]
     MinMax,
     /// Logarithmic from the nearest visible distance (0) to the farthest (1): equal
-    /// ratios of distance are equal steps, so that contours and colours stay
+    /// ratios of distance are equal steps, so that contours and colors stay
     /// distinct in the foreground of a large landscape.
     MinMaxLogarithmic,
     /// Linear from the camera's near plane (0) to its far plane (1), whatever is

@@ -38,7 +38,7 @@ struct Counts {
 
 @group(0) @binding(4) var<storage, read_write> counts: Counts;
 
-// Neighbouring depths are mostly in the same bin, so an invocation adds a run of them
+// Neighboring depths are mostly in the same bin, so an invocation adds a run of them
 // with one atomic operation, when the bin changes. `counted` is the sum of its runs.
 var<private> run_bin: u32;
 var<private> run: u32;

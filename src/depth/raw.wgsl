@@ -7,7 +7,7 @@ struct RawDepth {
     // unless the projection is oblique.
     view_z: vec4<f32>,
     view_w: vec4<f32>,
-    // Normalised device coordinates of a position in pixels: xy * position + zw.
+    // Normalized device coordinates of a position in pixels: xy * position + zw.
     ndc: vec4<f32>,
     // View depth in world units that becomes 1; smaller ones count as this.
     nearest: f32,

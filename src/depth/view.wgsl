@@ -141,7 +141,7 @@ fn middle_depth() -> f32 {
 #endif
 
 #ifdef DEPTH
-// (D, L) of a pixel: the mean over its samples, because its colour is their mean too.
+// (D, L) of a pixel: the mean over its samples, because its color is their mean too.
 fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #ifdef MULTISAMPLED
     var sum = vec2(0.0);
@@ -156,16 +156,16 @@ fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 }
 
 // The window whose corners are the pixels `low` and `high` of the depth texture.
-fn read_window(low: vec2<i32>, centre: vec2<i32>, high: vec2<i32>, sample: i32) -> Window {
+fn read_window(low: vec2<i32>, center: vec2<i32>, high: vec2<i32>, sample: i32) -> Window {
     var win: Window;
-    win.centre = texel_depth(centre, sample);
+    win.center = texel_depth(center, sample);
     win.nw = texel_depth(low, sample);
-    win.n = texel_depth(vec2(centre.x, low.y), sample);
+    win.n = texel_depth(vec2(center.x, low.y), sample);
     win.ne = texel_depth(vec2(high.x, low.y), sample);
-    win.w = texel_depth(vec2(low.x, centre.y), sample);
-    win.e = texel_depth(vec2(high.x, centre.y), sample);
+    win.w = texel_depth(vec2(low.x, center.y), sample);
+    win.e = texel_depth(vec2(high.x, center.y), sample);
     win.sw = texel_depth(vec2(low.x, high.y), sample);
-    win.s = texel_depth(vec2(centre.x, high.y), sample);
+    win.s = texel_depth(vec2(center.x, high.y), sample);
     win.se = texel_depth(high, sample);
     return win;
 }
@@ -176,7 +176,7 @@ fn missing_sides(low: vec2<i32>, high: vec2<i32>, first: vec2<i32>, last: vec2<i
         | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
 }
 
-// The depths of a pixel and of its eight neighbours `reach` pixels away. Positions
+// The depths of a pixel and of its eight neighbors `reach` pixels away. Positions
 // outside of the viewport are clamped to its border and marked in `missing`.
 fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     let first = view.viewport.xy;
@@ -200,22 +200,22 @@ fn last_texel() -> vec2<i32> {
 fn load_texel_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     let first = view.viewport.xy;
     let last = last_texel();
-    let centre = depth_pixel(pixel);
-    let low = centre - reach;
-    let high = centre + reach;
-    var win = read_window(max(low, first), centre, min(high, last), sample);
+    let center = depth_pixel(pixel);
+    let low = center - reach;
+    let high = center + reach;
+    var win = read_window(max(low, first), center, min(high, last), sample);
     win.missing = missing_sides(low, high, first, last);
     return win;
 }
 
-// Distances from the centre of load_window to its taps, in pixels of the depth texture:
+// Distances from the center of load_window to its taps, in pixels of the depth texture:
 // x, y to the west and north, z, w to the east and south. 0 where a tap reads the same
-// pixel of the depth texture as the centre.
+// pixel of the depth texture as the center.
 fn tap_distances(pixel: vec2<i32>, reach: i32) -> vec4<i32> {
-    let centre = depth_pixel(pixel);
+    let center = depth_pixel(pixel);
     let low = depth_pixel(inside_viewport(pixel - reach));
     let high = depth_pixel(inside_viewport(pixel + reach));
-    return vec4(centre - low, high - centre);
+    return vec4(center - low, high - center);
 }
 #endif
 
@@ -224,7 +224,7 @@ fn map_slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
 #ifdef SAME_SIZE
     return window_slope(frame, load_window(pixel, 1, 0));
 #else
-    // Neighbouring pixels of the picture can read one pixel of the depth texture.
+    // Neighboring pixels of the picture can read one pixel of the depth texture.
     return window_slope(frame, load_texel_window(pixel, 1, 0)) * view.depth_scale.y;
 #endif
 }

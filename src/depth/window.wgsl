@@ -8,7 +8,7 @@
 // bit of `missing` is set and its depths are those of the viewport's border.
 struct Window {
     nw: f32, n: f32, ne: f32,
-    w: f32, centre: f32, e: f32,
+    w: f32, center: f32, e: f32,
     sw: f32, s: f32, se: f32,
     missing: u32,
 }
@@ -18,7 +18,7 @@ const MISSING_E: u32 = 2u;
 const MISSING_N: u32 = 4u;
 const MISSING_S: u32 = 8u;
 
-// Difference of D between each neighbour and its reference, which is the centre or a
+// Difference of D between each neighbor and its reference, which is the center or a
 // plane through it.
 struct Steps {
     nw: f32, n: f32, ne: f32,
@@ -48,9 +48,9 @@ fn step_from(f: DepthFrame, gap: f32, d: f32, p: f32, p_is_sky: bool) -> f32 {
     return depth_step(f, select(d, f.far, d_is_sky), select(p, f.far, p_is_sky)) + behind;
 }
 
-// Differences to the centre. They include slopes, as in [CS].
+// Differences to the center. They include slopes, as in [CS].
 fn map_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
-    let c = win.centre;
+    let c = win.center;
     let sky = is_background(c);
     return Steps(
         step_from(f, gap, win.nw, c, sky),
@@ -81,5 +81,5 @@ fn window_slope(f: DepthFrame, win: Window) -> f32 {
 // The largest raw depth of a window, which is that of the nearest geometry.
 fn nearest_depth(win: Window) -> f32 {
     let row = max(max(win.nw, win.n), max(win.ne, win.w));
-    return max(max(row, win.centre), max(max(win.e, win.sw), max(win.s, win.se)));
+    return max(max(row, win.center), max(max(win.e, win.sw), max(win.s, win.se)));
 }

@@ -1,7 +1,7 @@
 //! Blends two effects of one type.
 //!
 //! Numbers and vectors are interpolated linearly, numbers of logarithmic ranges by ratio,
-//! colours in `OKLab`. A mode has
+//! colors in `OKLab`. A mode has
 //! no value in between: the effect fades out, its mode changes at half time, when
 //! it has no strength, and it fades in again, so that the picture does not jump.
 //! Only fields with [`BlendField::Switch`] change at half time without a fade.

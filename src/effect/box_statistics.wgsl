@@ -3,7 +3,7 @@
 // Means over boxes of the picture before an effect, for effects that need `Needs::BOX_STATISTICS`. The
 // only module that declares binding 12.
 //
-// Colours are averaged as square roots of linear light, nearly as they are displayed: means of
+// Colors are averaged as square roots of linear light, nearly as they are displayed: means of
 // light would be those of its brightest pixels. What is transparent, or outside of the
 // viewport, is not in a mean.
 
@@ -42,7 +42,7 @@ fn square(root: vec3<f32>) -> vec3<f32> {
     return root * abs(root);
 }
 
-// A colour from its luminance, and red and blue less that.
+// A color from its luminance, and red and blue less that.
 fn color_of(mean: f32, chroma: vec2<f32>) -> vec3<f32> {
     let green = -(0.2126 * chroma.x + 0.0722 * chroma.y) / 0.7152;
     return mean + vec3(chroma.x, green, chroma.y);

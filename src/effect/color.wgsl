@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effect::color
 
-// Colour conversions shared by the effects. Effects take and return linear
+// Color conversions shared by the effects. Effects take and return linear
 // light. The papers' formulas work on display codes (sRGB-encoded, 0 to 1), so
 // the faithful equations convert inside.
 
@@ -57,7 +57,7 @@ fn smallest(c: vec3<f32>) -> f32 {
     return min(c.r, min(c.g, c.b));
 }
 
-// HSV hue in [0, 1); greys have hue 0.
+// HSV hue in [0, 1); grays have hue 0.
 fn hue_of(c: vec3<f32>) -> f32 {
     let value = largest(c);
     let chroma = value - smallest(c);
@@ -76,7 +76,7 @@ fn hue_of(c: vec3<f32>) -> f32 {
     return select(h, h + 1.0, h < 0.0);
 }
 
-// The fully saturated colour, in display codes, of an HSV hue in [0, 1).
+// The fully saturated color, in display codes, of an HSV hue in [0, 1).
 fn hue_color(hue: f32) -> vec3<f32> {
     let p = abs(fract(vec3(hue) + vec3(1.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0);
     return clamp(p - 1.0, vec3(0.0), vec3(1.0));
@@ -143,20 +143,20 @@ fn split_bands(levels: f32, splits: f32, y: f32, step_width: f32) -> f32 {
     return mix(fewer, banded(2.0 * bands, y, step_width), smoothstep(0.0, 1.0, splits - whole));
 }
 
-// Moves a colour towards the grey of its OKLab lightness, as little as possible, until all
+// Moves a color towards the gray of its OKLab lightness, as little as possible, until all
 // components are from 0 to 1, or within those of `before` if these are beyond.
 fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {
-    let grey = vec3(lab_lightness * lab_lightness * lab_lightness);
-    let low = min(vec3(min(smallest(before), 0.0)), grey);
-    let high = max(vec3(max(largest(before), 1.0)), grey);
-    let away = c - grey;
-    let room = select(low, high, away > vec3(0.0)) - grey;
+    let gray = vec3(lab_lightness * lab_lightness * lab_lightness);
+    let low = min(vec3(min(smallest(before), 0.0)), gray);
+    let high = max(vec3(max(largest(before), 1.0)), gray);
+    let away = c - gray;
+    let room = select(low, high, away > vec3(0.0)) - gray;
     let kept = select(vec3(1.0), room / away, abs(away) > abs(room));
-    return clamp(grey + smallest(kept) * away, low, high);
+    return clamp(gray + smallest(kept) * away, low, high);
 }
 
-// The tones of four inks for a colour of 0 to 1 in linear light: cyan, magenta, yellow,
-// black. Printed with ideal inks, they have the colour as their mean. `black`: fraction of
+// The tones of four inks for a color of 0 to 1 in linear light: cyan, magenta, yellow,
+// black. Printed with ideal inks, they have the color as their mean. `black`: fraction of
 // the darkness that all three share which is printed in black.
 fn separated(c: vec3<f32>, black: f32) -> vec4<f32> {
     let light = 1.0 - black * (1.0 - largest(c));

@@ -89,7 +89,7 @@ pub trait Effect:
 
     /// A debug view that shows what the effect computes, if it has one. Its WGSL function is called
     /// `NAME_view`. It takes the settings and the pixel that the effect returned, and returns a
-    /// display-encoded (sRGB) colour. Default: none.
+    /// display-encoded (sRGB) color. Default: none.
     const VIEW: Option<EffectView> = None;
 
     /// Whether the module has a function `NAME_half_box` for [`Needs::BOX_STATISTICS`]: it takes
@@ -124,7 +124,7 @@ pub trait Effect:
     #[must_use]
     fn faded(self, fraction: f32) -> Self;
 
-    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default: none.
+    /// The inputs that the effect's WGSL reads besides its pixel's color. Default: none.
     fn needs(&self) -> Needs {
         Needs::empty()
     }
@@ -196,7 +196,7 @@ pub trait Effect:
 
     /// Interpolates between this effect (`t` = 0) and `other` (`t` = 1). Default:
     /// numbers (`f32`, `Vec2`, `Vec3`) are interpolated linearly, or by ratio if their
-    /// [`FieldRange`] is logarithmic; colours are interpolated in
+    /// [`FieldRange`] is logarithmic; colors are interpolated in
     /// `OKLab`; fields marked by [`BlendField::Fields`] are interpolated field by field; all others
     /// keep this effect's values.
     #[must_use]
@@ -229,7 +229,7 @@ pub trait Effect:
 /// Where an effect can change the picture.
 ///
 /// An effect that is not [`Everywhere`](Self::Everywhere) only draws over the picture:
-/// the colour and alpha that it returns are
+/// the color and alpha that it returns are
 /// `mix(vec4(p.color, p.alpha), vec4(ink, 1.0), opacity)`, and neither `ink` nor
 /// `opacity` depends on the picture. If all effects of a camera are of this kind, the
 /// fused pass is blended over the picture instead of copying it, unless the camera is HDR.
@@ -248,14 +248,14 @@ pub enum AffectedArea {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum EffectStage {
-    /// Changes the lightness of the picture, before colours and ink are added.
+    /// Changes the lightness of the picture, before colors and ink are added.
     Tone,
-    /// Changes the colours of the picture.
+    /// Changes the colors of the picture.
     Color,
-    /// Prints the colours: plates and screens. A view with such an effect is styled after
+    /// Prints the colors: plates and screens. A view with such an effect is styled after
     /// FXAA and SMAA instead of before: these would smear dots.
     Print,
-    /// Draws lines and areas of ink over the colours.
+    /// Draws lines and areas of ink over the colors.
     Ink,
     /// Changes the whole picture, ink included, as paper and print do.
     Page,

@@ -3,7 +3,7 @@
 use bitflags::bitflags;
 
 bitflags! {
-    /// The inputs that an effect's WGSL reads besides the colour of its pixel.
+    /// The inputs that an effect's WGSL reads besides the color of its pixel.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub struct Needs: u32 {
         /// The depth map at the pixel, in `Pixel::depth`. Runs the depth prepass,
@@ -51,7 +51,7 @@ bitflags! {
         const OBJECT_ANCHORS = 1 << 10;
         /// That picture together with a number of the effect's own at every pixel, by
         /// `bevy_comics::effect::aux_scalar::load_aux_scalar`: both by one load, for effects that
-        /// would read the depth of many pixels besides their colours. In place of
+        /// would read the depth of many pixels besides their colors. In place of
         /// [`Needs::PICTURE`]: the first pass draws a texture of the viewport's size with 16
         /// bytes a pixel, which holds both. The WGSL says what the number is, see
         /// [`Effect::AUX_SCALAR`](super::Effect::AUX_SCALAR). An effect that also has

@@ -12,7 +12,7 @@
 @group(0) @binding(10) var picture_sampler: sampler;
 #endif
 
-// The colour at a pixel of the render target, in linear light and multiplied by its
+// The color at a pixel of the render target, in linear light and multiplied by its
 // opacity, and the opacity. Outside of the viewport: that of its nearest pixel.
 fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
 #ifdef CONTINUED
@@ -33,7 +33,7 @@ fn load_inside(pixel: vec2<i32>) -> vec4<f32> {
 }
 
 // As load_picture() at a position in physical pixels from the render target's top left corner:
-// bilinear between the centres of pixels.
+// bilinear between the centers of pixels.
 fn picture_at(position: vec2<f32>) -> vec4<f32> {
 #ifdef CONTINUED
     let inside = position - vec2<f32>(view.viewport.xy);

@@ -7,13 +7,13 @@ struct Pixel {
     // multiplied by the opacity.
     color: vec3<f32>,
     original: vec3<f32>,
-    // The picture after the effects that change colours, before ink; like `color`. Set
+    // The picture after the effects that change colors, before ink; like `color`. Set
     // from the stage Ink on.
     colored: vec3<f32>,
     // Opacity of the picture after the effects so far, 0 to 1: below 1 where the
     // background shows through. Opaque ink of coverage a makes it a + (1 - a) * alpha.
     alpha: f32,
-    // Centre of the pixel in the render target: physical pixels from its top left
+    // Center of the pixel in the render target: physical pixels from its top left
     // corner.
     position: vec2<f32>,
     // Column and row of the pixel in the viewport, whole numbers from 0.

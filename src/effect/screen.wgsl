@@ -8,7 +8,7 @@
 
 const PI: f32 = 3.1415927;
 
-// Tone at which the discs of neighbouring cells touch.
+// Tone at which the discs of neighboring cells touch.
 const TOUCH: f32 = 0.7853982;
 
 // Below this tone, and above 1 minus it, dots and holes do not become smaller but paler,
@@ -64,7 +64,7 @@ fn disc(at: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     return mix(sum, largest, 0.31 * overlap);
 }
 
-// Dots that grow into a chequerboard and leave holes: a threshold of a sum of cosines. `offset`:
+// Dots that grow into a checkerboard and leave holes: a threshold of a sum of cosines. `offset`:
 // from the middle of the cell, in cells, 0 to 1/2.
 fn checker(offset: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     let waves = vec2(cos_turn(offset.x), cos_turn(offset.y));
@@ -79,7 +79,7 @@ fn checker(offset: vec2<f32>, tone: f32, cell_size: f32) -> f32 {
     return clamp(0.5 + (height - threshold) / slope, 0.0, 1.0);
 }
 
-// Discs in the lights, a chequerboard in the middle, round holes in the shadows
+// Discs in the lights, a checkerboard in the middle, round holes in the shadows
 // (Ostromoukhov and Hersch 1995 call it Euclidean). Discs and holes are those of tones up to 0.3:
 // only the nearest one reaches a pixel, from a cell_size of 2.7 pixels on.
 fn euclidean(at: vec2<f32>, tone: f32, cell_size: f32) -> f32 {

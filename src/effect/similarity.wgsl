@@ -9,11 +9,11 @@ const WIDEST: f32 = 1.4142135;
 const FADES_FROM: f32 = 1.3;
 
 struct Similarity {
-    // Where the centre of the object is, in physical pixels of the render target.
+    // Where the center of the object is, in physical pixels of the render target.
     origin: vec2<f32>,
     // Cosine and sine of the object's turn about the view's axis, clockwise.
     turn: vec2<f32>,
-    // Apparent size, times a power of two: 0.707 to 1.414; 0 if the centre is behind the camera.
+    // Apparent size, times a power of two: 0.707 to 1.414; 0 if the center is behind the camera.
     size: f32,
     // Half or double of it, whichever is nearer, and how much of that is seen: 0 to 0.5.
     other: f32,
@@ -31,14 +31,14 @@ fn rotated(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return v + 2.0 * cross(rotation.xyz, cross(rotation.xyz, v) + rotation.w * v);
 }
 
-// `viewport`: x, y, width, height in physical pixels; `centre` in world space; `size`: world
+// `viewport`: x, y, width, height in physical pixels; `center` in world space; `size`: world
 // units per unit of the object.
 fn similarity_of(
     clip_from_world: mat4x4<f32>, viewport: vec4<f32>,
-    centre: vec3<f32>, size: f32, rotation: vec4<f32>,
+    center: vec3<f32>, size: f32, rotation: vec4<f32>,
 ) -> Similarity {
     var found: Similarity;
-    let clip = clip_from_world * vec4(centre, 1.0);
+    let clip = clip_from_world * vec4(center, 1.0);
     // Half heights of the view per world unit.
     let m = clip_from_world;
     let scale = length(vec3(m[0].y, m[1].y, m[2].y));

@@ -13,7 +13,7 @@ const PI: f32 = 3.14159265;
 // Layers of dots, each with a lattice of its own. What they leave is a plain tone.
 const LAYERS: u32 = 5u;
 // The tone at which dots of one size touch while the level changes: then a new dot is 0.866
-// of the distance of the old ones from its neighbours.
+// of the distance of the old ones from its neighbors.
 const TOUCHING: f32 = 0.589;
 
 // Darkness of a layer at which the next one begins.

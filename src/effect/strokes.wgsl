@@ -238,13 +238,13 @@ fn darkness(s: Strokes, light: f32) -> f32 {
     return tone;
 }
 
-// The colour between the strokes, so that the mean of an area stays what it was.
+// The color between the strokes, so that the mean of an area stays what it was.
 fn ground_color(s: Strokes, color: vec3<f32>, tone: f32) -> vec3<f32> {
     let t = min(tone, 0.9);
     return clamp((color - s.ink * t) / (1.0 - t), vec3(0.0), max(vec3(1.0), color));
 }
 
-// The colour of a surface that is covered by strokes.
+// The color of a surface that is covered by strokes.
 fn with_strokes(s: Strokes, color: vec3<f32>, tone: f32, cover: f32) -> vec3<f32> {
     var ground = s.paper;
     if s.ground != GROUND_PAPER {

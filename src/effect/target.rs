@@ -9,7 +9,7 @@ use bevy::{
 /// On a camera: the object that effects of this camera point at, such as
 /// [`SpeedLines`](crate::SpeedLines). They follow it over the screen.
 ///
-/// Effects use their own centre while the entity does not exist, has no `GlobalTransform`,
+/// Effects use their own center while the entity does not exist, has no `GlobalTransform`,
 /// or is behind the camera.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Clone, PartialEq)]

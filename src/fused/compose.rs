@@ -5,7 +5,7 @@ use crate::effect::{EffectRegistry, EffectStage, EffectType, definition};
 /// The template of the pass; lines that begin with `//@` are replaced.
 const RECIPE: &str = include_str!("fused.wgsl");
 
-/// Behind the effects that change colours: gives the objects with `NoStyle` theirs back.
+/// Behind the effects that change colors: gives the objects with `NoStyle` theirs back.
 const RESTORE: &str = "#ifdef UNSTYLED_COLORS
     p.color = mix(p.color, p.original, unstyled_fraction(pixel));
 #endif

@@ -124,7 +124,7 @@ fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
     return p;
 }
 
-// A pixel after the effects that change colours.
+// A pixel after the effects that change colors.
 fn colored(before: Pixel, pixel: vec2<i32>) -> Pixel {
     var p = before;
     //@colors
@@ -132,7 +132,7 @@ fn colored(before: Pixel, pixel: vec2<i32>) -> Pixel {
 }
 
 #ifdef SURFACE_LINES
-// The colour of a pixel of the viewport after these effects.
+// The color of a pixel of the viewport after these effects.
 fn surface_color(pixel: vec2<i32>, change: f32) -> vec3<f32> {
     var p = found(pixel, load_source(pixel));
     p.change = change;
@@ -142,7 +142,7 @@ fn surface_color(pixel: vec2<i32>, change: f32) -> vec3<f32> {
 }
 #endif
 
-// A pixel after the effects that print its colours.
+// A pixel after the effects that print its colors.
 fn printed(before: Pixel, pixel: vec2<i32>) -> Pixel {
     var p = before;
     //@prints

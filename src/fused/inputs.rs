@@ -27,7 +27,7 @@ use crate::{
     objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
 };
 
-/// Reads between the centres of pixels.
+/// Reads between the centers of pixels.
 #[derive(Resource)]
 pub(super) struct PassSampler(pub Sampler);
 

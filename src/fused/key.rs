@@ -58,21 +58,21 @@ pub(crate) struct StylizeKey {
     pub depth: bool,
     visible_range: bool,
     pub lines: bool,
-    /// Lines have the colour of surfaces.
+    /// Lines have the color of surfaces.
     surface: bool,
     /// Convex and concave creases differ.
     edge_styles: bool,
-    /// Lines have other colours in near, middle and far.
+    /// Lines have other colors in near, middle and far.
     pub layer_ink: bool,
     pub object_styles: bool,
-    /// Some objects are left alone: by the colour effects of the pass, by its prints.
+    /// Some objects are left alone: by the color effects of the pass, by its prints.
     unstyled_colors: bool,
     unstyled_print: bool,
     own_pixels: Option<OwnPixels>,
     /// How far lines reach out of their objects in pixels, if these are found by their ids.
     mask_reach: u32,
     pub beyond: BeyondPrepass,
-    /// Whether colour effects of the pass, and its prints, change only some pixels.
+    /// Whether color effects of the pass, and its prints, change only some pixels.
     masked_colors: bool,
     masked_print: bool,
     /// Of the effects that come after prints: whether they draw lines.

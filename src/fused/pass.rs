@@ -86,7 +86,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
 /// view's textures, only when all inputs are there: a swap without a draw would
 /// lose the picture.
 ///
-/// `PRINTS`: draws the views whose colours are printed, the others otherwise.
+/// `PRINTS`: draws the views whose colors are printed, the others otherwise.
 pub(super) fn stylize<const PRINTS: bool>(
     view: ViewQuery<(
         (

@@ -106,7 +106,7 @@ impl DebugView {
 }
 
 impl Plan {
-    /// Whether the colours are printed: the view is then styled after FXAA and SMAA.
+    /// Whether the colors are printed: the view is then styled after FXAA and SMAA.
     pub(super) fn runs_after_anti_aliasing(&self) -> bool {
         self.drawn().any(AnyEffect::any_runs_after_anti_aliasing)
     }

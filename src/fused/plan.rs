@@ -52,7 +52,7 @@ pub(crate) struct Plan {
     pub sections: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub vertex_widths: bool,
-    /// The colour effects leave some object alone.
+    /// The color effects leave some object alone.
     pub unstyled: bool,
     /// Screens follow some object.
     pub anchored: bool,

@@ -132,7 +132,7 @@ pub(crate) enum FindPass {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrackPasses {
     pub find: FindPass,
-    /// `None` if only neighbouring pixels are searched.
+    /// `None` if only neighboring pixels are searched.
     pub columns: Option<CachedRenderPipelineId>,
     pub draw: CachedRenderPipelineId,
     /// Draws the strokes beyond loose ends.

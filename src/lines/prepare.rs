@@ -44,7 +44,7 @@ pub(crate) struct ViewLines {
     pub tiles: Option<Tiles>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
     pub ink: Option<CachedTexture>,
-    /// The pixels that own its lines, if their colour depends on them.
+    /// The pixels that own its lines, if their color depends on them.
     pub owners: Option<CachedTexture>,
     /// The ink of this frame and of those before, if lines have a history.
     pub history: Option<LineHistory>,
@@ -59,7 +59,7 @@ pub(crate) struct Cracks {
     pub store: CrackStore,
     /// How densely lines lie, if they have a budget.
     pub densities: Option<LineDensities>,
-    /// The best cracks of each pixel's column, unless only neighbours are searched.
+    /// The best cracks of each pixel's column, unless only neighbors are searched.
     pub columns: Option<CachedTexture>,
     /// The strokes beyond loose ends, if lines have such.
     pub strokes: Option<StrokeList>,

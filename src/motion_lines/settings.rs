@@ -61,7 +61,7 @@ pub struct MotionLines {
     /// camera. Range 0.5 to 16, default 3.
     #[reflect(@FieldRange::logarithmic(0.5, 16.0).unit("px"))]
     pub width: f32,
-    /// Colour of the ink before tonemapping; its alpha is the opacity. Components are clamped to
+    /// Color of the ink before tonemapping; its alpha is the opacity. Components are clamped to
     /// what a display shows. Default: black.
     pub color: Color,
     /// Drawings per second: lines change with the drawings of a

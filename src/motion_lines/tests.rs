@@ -43,7 +43,7 @@ fn points_lie_on_the_surface_evenly_by_area() {
 }
 
 /// Points are farther from each other than random ones: of n random points on an area A, the
-/// nearest neighbour is at `0.5 sqrt(A / n)` in the mean.
+/// nearest neighbor is at `0.5 sqrt(A / n)` in the mean.
 #[test]
 fn points_keep_apart_and_depend_on_the_seed_alone() {
     let ball: Mesh = Sphere::new(1.0).mesh().ico(8).expect("few vertices");

@@ -20,7 +20,7 @@ use super::{inherit::Heritage, table::ObjectStyleUniform};
 /// The dots rotate with the object's roll on the screen: with the screen direction of its Y axis,
 /// or of its -Z axis where Y points to within 6 degrees of the camera. They grow with its apparent
 /// size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then dots of
-/// half the size take over, faded in and out. While the centre is behind the camera, its dots lie
+/// half the size take over, faded in and out. While the center is behind the camera, its dots lie
 /// on the page.
 ///
 /// Each object takes a slot of the table of [`OutlineStyle`](crate::OutlineStyle)s, which has 255.
@@ -47,7 +47,7 @@ impl Default for PatternAnchor {
 /// Where an object is.
 #[derive(Clone, Copy)]
 pub(super) struct Anchor {
-    centre: Vec3,
+    center: Vec3,
     rotation: Vec4,
     size: f32,
 }
@@ -55,21 +55,21 @@ pub(super) struct Anchor {
 impl Anchor {
     /// `None` for an object without an extent, or not at a finite place.
     pub fn new(screen: &PatternAnchor, at: &GlobalTransform) -> Option<Self> {
-        let offset = Some(screen.center).filter(|centre| centre.is_finite());
-        let centre = at.transform_point(offset.unwrap_or_default());
+        let offset = Some(screen.center).filter(|center| center.is_finite());
+        let center = at.transform_point(offset.unwrap_or_default());
         let (scale, rotation, _) = at.to_scale_rotation_translation();
         let size = scale.abs().element_product().cbrt();
         let rotation = Vec4::from(rotation.normalize());
-        let is_sound = centre.is_finite() && rotation.is_finite() && size.is_normal();
+        let is_sound = center.is_finite() && rotation.is_finite() && size.is_normal();
         is_sound.then_some(Self {
-            centre,
+            center,
             rotation,
             size,
         })
     }
 
     pub fn put(self, style: &mut ObjectStyleUniform) {
-        style.anchor_centre = self.centre;
+        style.anchor_center = self.center;
         style.anchor_rotation = self.rotation;
         style.anchor_size = self.size;
     }

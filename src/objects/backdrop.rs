@@ -31,7 +31,7 @@ use super::inherit::{Inherited, Values, register};
 /// painted distances.
 ///
 /// The mesh has no lines and no object id, is at the far end of the depth map, and does not widen
-/// the visible range. Colour effects change it as they change the sky. The main pass still draws
+/// the visible range. Color effects change it as they change the sky. The main pass still draws
 /// it, behind whatever is in front, so the unstyled picture does not change. With deferred
 /// rendering it works for forward materials only.
 ///
@@ -127,8 +127,8 @@ pub(crate) fn nearest_backdrop(
         }
         let (scale, rotation, _) = at.to_scale_rotation_translation();
         let half = Vec3::from(aabb.half_extents) * scale.abs();
-        let centre = at.transform_point(aabb.center.into());
-        let from = rotation.inverse() * (eye.translation() - centre);
+        let center = at.transform_point(aabb.center.into());
+        let from = rotation.inverse() * (eye.translation() - center);
         let outside = from.abs() - half;
         if outside.max_element() > 0.0 {
             return Some(along * outside.max(Vec3::ZERO).length());

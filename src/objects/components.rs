@@ -44,12 +44,12 @@ impl Default for NoOutlines {
     }
 }
 
-/// Takes this object out of the colour effects: its colours stay as they were rendered.
+/// Takes this object out of the color effects: its colors stay as they were rendered.
 ///
 /// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) do not apply
 /// to it: tone bands, desaturation, colorization, screens, and a game's own effects. Lines and the
 /// effects of the whole page still apply; [`NoOutlines`] removes its lines. Along its edges,
-/// multisampled pixels mix the styled and the unstyled colour. Use it for things whose colour has a
+/// multisampled pixels mix the styled and the unstyled color. Use it for things whose color has a
 /// meaning: a cursor, a team's flag, a light.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
@@ -78,7 +78,7 @@ impl Default for NoStyle {
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineStyle {
-    /// Colour of all lines, clamped to what a display shows; its alpha is not used.
+    /// Color of all lines, clamped to what a display shows; its alpha is not used.
     /// `None` keeps the camera's. Default: `None`.
     pub color: Option<Color>,
     /// Width of all lines in logical pixels; `None` keeps the camera's.

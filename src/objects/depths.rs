@@ -66,14 +66,14 @@ impl Bounds {
     /// The box around a mesh; `None` if it is at no finite place.
     fn of(aabb: &Aabb, at: &GlobalTransform) -> Option<Self> {
         let affine = at.affine();
-        let centre = affine.transform_point3(aabb.center.into());
+        let center = affine.transform_point3(aabb.center.into());
         let axes = Mat3::from(affine.matrix3);
         let half = Vec3::from(aabb.half_extents);
         let reach =
             axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
         let found = Self {
-            low: centre - reach,
-            high: centre + reach,
+            low: center - reach,
+            high: center + reach,
         };
         (found.low.is_finite() && found.high.is_finite()).then_some(found)
     }

@@ -41,7 +41,7 @@ const OBJECT_EDGES: u32 = 4;
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct SelectionOutline {
-    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Color of the line, clamped to what a display shows; its alpha is not used.
     /// Default: orange.
     pub color: Color,
     /// Width of the line in logical pixels. Range 0.5 to 16, default 3.
@@ -77,7 +77,7 @@ impl Default for SelectionOutline {
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct XRayOutline {
-    /// Colour of the lines, clamped to what a display shows; its alpha is not used.
+    /// Color of the lines, clamped to what a display shows; its alpha is not used.
     /// Default: light blue.
     pub color: Color,
     /// Width of the lines in logical pixels. Range 0.5 to 16, default 2.
@@ -102,7 +102,7 @@ impl Default for XRayOutline {
     }
 }
 
-/// A line with this colour, width and opacity. `kinds`: those that are drawn.
+/// A line with this color, width and opacity. `kinds`: those that are drawn.
 fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectStyleUniform {
     ObjectStyleUniform {
         color: linear_rgb(color),

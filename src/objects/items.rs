@@ -250,7 +250,7 @@ impl IdItems<'_> {
         let wanted = widths && self.wide.0.contains(entity);
         let has_colors = drawn.mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
         if wanted && !has_colors {
-            warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colours");
+            warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colors");
         }
         IdVariant {
             sections: self.sections.draws(entity, is_masked(drawn.properties)),

@@ -34,18 +34,18 @@ use super::{
 };
 use crate::{bind_groups::Binder, gpu};
 
-/// The alpha of this mesh's vertex colours
+/// The alpha of this mesh's vertex colors
 /// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
 /// 0 is no line, 0.5 the width that lines have otherwise, 1 twice that width.
 ///
-/// In between, the width changes gradually; over the surface, it is interpolated as vertex colours
+/// In between, the width changes gradually; over the surface, it is interpolated as vertex colors
 /// are. It multiplies the factors of the camera's [`LineWeight`](crate::lines::LineWeight); its
 /// product with [`pressure`](crate::lines::LineWeight::pressure) is 2 at most. It applies to lines
 /// of the corrected equations, on devices with compute shaders. A line belongs to the surface in
 /// front; the width of creases and object edges is the mean over both sides.
 ///
-/// A mesh without vertex colours has the factor 1, and the log warns once. The engine
-/// multiplies the material's colour by vertex colours: with [`AlphaMode::Opaque`] the alpha
+/// A mesh without vertex colors has the factor 1, and the log warns once. The engine
+/// multiplies the material's color by vertex colors: with [`AlphaMode::Opaque`] the alpha
 /// changes no picture, with [`AlphaMode::Mask`] it is compared with the cutoff. A material with
 /// a prepass vertex shader of its own must write the fields of the engine's prepass
 /// `VertexOutput`.

@@ -12,19 +12,19 @@
 // objects without a style.
 struct ObjectStyle {
     color: vec3<f32>,
-    // 1: the style overrides the colour; 0: it does not.
+    // 1: the style overrides the color; 0: it does not.
     has_color: f32,
     // Half width in logical pixels; negative if the style does not override it.
     half_width: f32,
     // Kinds that are drawn: bit 0 silhouettes, bit 1 creases, bit 2 object edges; bit 3: the
-    // colour effects leave the object alone.
+    // color effects leave the object alone.
     kinds: u32,
     // Factor of the opacity of all lines.
     opacity: f32,
-    // World units per unit of an object that screens follow, 0: they do not; its centre and
+    // World units per unit of an object that screens follow, 0: they do not; its center and
     // rotation (a quaternion) in world space.
     anchor_size: f32,
-    anchor_centre: vec3<f32>,
+    anchor_center: vec3<f32>,
     unused: f32,
     anchor_rotation: vec4<f32>,
 }
@@ -86,7 +86,7 @@ fn style_of(slot: u32) -> ObjectStyle {
 #ifdef OBJECT_DEPTHS
 @group(0) @binding(32) var<storage, read> object_depths: array<vec4<f32>>;
 
-// Where the object with this id is in the depth map: D of its centre, and how much its pixels
+// Where the object with this id is in the depth map: D of its center, and how much its pixels
 // follow it, 0 to 1: 0 for what extends far in depth, and for unknown objects.
 fn object_depth(id: u32) -> vec2<f32> {
     let entry = object_depths[min(id, arrayLength(&object_depths) - 1u)];
@@ -100,7 +100,7 @@ fn object_simplification(id: u32) -> vec2<f32> {
 }
 
 // D at a sample of a pixel of the target, and where that shows an object which is treated as a whole,
-// D of this object's centre.
+// D of this object's center.
 fn whole_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
     let found = object_depth(texel_object(depth_pixel(pixel), sample).x);
     return mix(d, found.x, found.y);
@@ -108,7 +108,7 @@ fn whole_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
 #endif
 
 #ifdef UNSTYLED
-// The fraction of a pixel's samples that show objects which the colour effects leave alone.
+// The fraction of a pixel's samples that show objects which the color effects leave alone.
 fn unstyled_fraction(pixel: vec2<i32>) -> f32 {
     let at = depth_pixel(pixel);
 #ifdef MULTISAMPLED

@@ -43,8 +43,8 @@ pub(super) fn extract_ranged_meshes(
     ranged
         .0
         .extend(meshes.iter().map(|(mesh, range, at, aabb)| {
-            let centre = aabb.filter(|_| range.use_aabb).map(|aabb| aabb.center);
-            let place = at.affine().transform_point3a(centre.unwrap_or_default());
+            let center = aabb.filter(|_| range.use_aabb).map(|aabb| aabb.center);
+            let place = at.affine().transform_point3a(center.unwrap_or_default());
             (mesh.into(), range.clone(), place)
         }));
 }

@@ -26,8 +26,8 @@ pub(crate) struct ObjectStyleUniform {
     pub opacity: f32,
     /// World units per unit of an object that screens follow; 0: they do not.
     pub anchor_size: f32,
-    /// Its centre in world space.
-    pub anchor_centre: Vec3,
+    /// Its center in world space.
+    pub anchor_center: Vec3,
     pub unused: f32,
     /// Its rotation, a unit quaternion.
     pub anchor_rotation: Vec4,
@@ -42,7 +42,7 @@ impl Default for ObjectStyleUniform {
             kinds: 7,
             opacity: 1.0,
             anchor_size: 0.0,
-            anchor_centre: Vec3::ZERO,
+            anchor_center: Vec3::ZERO,
             unused: 0.0,
             anchor_rotation: Vec4::W,
         }
@@ -89,7 +89,7 @@ pub(crate) const VISIBLE_ONLY: u32 = 32;
 #[cfg(feature = "objects")]
 const ALL_KINDS: u32 = 7;
 
-/// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
+/// The bit of `ObjectStyleUniform::kinds` of objects that the color effects leave alone.
 #[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;
 
@@ -103,7 +103,7 @@ pub(crate) struct ObjectChanges {
     pub asked_sections: bool,
     /// The vertices of some mesh say how wide its lines are.
     pub widths: bool,
-    /// The colour effects leave some object alone.
+    /// The color effects leave some object alone.
     pub unstyled: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
     pub highlights: bool,
@@ -276,7 +276,7 @@ impl ObjectStyleUniform {
     /// All of it; equal for styles that are drawn alike.
     fn bits(&self) -> [u32; 15] {
         let [r, g, b] = self.color.to_array();
-        let [x, y, z] = self.anchor_centre.to_array();
+        let [x, y, z] = self.anchor_center.to_array();
         let [i, j, k, w] = self.anchor_rotation.to_array();
         let kinds = f32::from_bits(self.kinds);
         let [color, half, opacity, size] = [

@@ -11,15 +11,15 @@ use super::{
     parts::{attributes, is_same_variant, part, part_mut},
 };
 
-/// The colour at fraction `t` (0 to 1) between two colours, mixed in `OKLab`.
+/// The color at fraction `t` (0 to 1) between two colors, mixed in `OKLab`.
 ///
-/// Its components are clamped to 0 to 1 in linear light. Equal colours come back
+/// Its components are clamped to 0 to 1 in linear light. Equal colors come back
 /// unchanged.
 pub fn blend_color(a: Color, b: Color, t: f32) -> Color {
     if a == b {
         return a;
     }
-    // A mixture of two displayable colours can be outside of the display's gamut.
+    // A mixture of two displayable colors can be outside of the display's gamut.
     let mixed = LinearRgba::from(Oklaba::from(a).mix(&Oklaba::from(b), t));
     let shown = |part: f32| part.clamp(0.0, 1.0);
     LinearRgba {
@@ -82,12 +82,12 @@ pub(crate) trait Blend: PartialReflect + Clone {
     /// The settings with `fraction` of their strength; at 0 they change nothing.
     fn faded(self, fraction: f32) -> Self;
 
-    /// Whether the two differ in numbers and colours only, not in a mode.
+    /// Whether the two differ in numbers and colors only, not in a mode.
     fn same_modes(&self, other: &Self) -> bool {
         same_modes(self, other)
     }
 
-    /// Numbers and colours at fraction `t` between the two; modes of `self`.
+    /// Numbers and colors at fraction `t` between the two; modes of `self`.
     fn mixed(&self, other: &Self, t: f32) -> Self {
         mix_fields(self, other, t)
     }
@@ -99,7 +99,7 @@ pub(crate) trait Blend: PartialReflect + Clone {
 }
 
 /// The fields at fraction `t` between the two values, as [`BlendField`] says: `f32`, `Vec2`, `Vec3`
-/// and colours are interpolated, all others are those of `a`.
+/// and colors are interpolated, all others are those of `a`.
 pub(crate) fn mix_fields<T: PartialReflect + Clone>(a: &T, b: &T, t: f32) -> T {
     let mut mixed = a.clone();
     mix_parts(&mut mixed, [a, b], t, None);

@@ -33,8 +33,8 @@ pub fn clamp_option_or_default(
     value.map(|value| clamp_or_default(value, default, low, high))
 }
 
-/// A displayable colour: every component, alpha included, clamped to 0 to 1 in
-/// linear light. A colour with a component that is NaN or infinite becomes
+/// A displayable color: every component, alpha included, clamped to 0 to 1 in
+/// linear light. A color with a component that is NaN or infinite becomes
 /// `default`.
 pub fn clamp_color(color: Color, default: Color) -> Color {
     let linear = |color: Color| {
@@ -46,7 +46,7 @@ pub fn clamp_color(color: Color, default: Color) -> Color {
         parts = linear(default);
     }
     if parts.iter().all(|part| (0.0..=1.0).contains(part)) {
-        // Nothing was clamped: return the colour in its own colour space, so that
+        // Nothing was clamped: return the color in its own color space, so that
         // it compares equal to the caller's.
         return if linear(color) == parts {
             color

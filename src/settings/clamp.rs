@@ -13,12 +13,12 @@ use super::{
 };
 
 /// The value with every `f32`, `u32`, `Vec2` and `Vec3` in the [`FieldRange`] of its field, if it
-/// has one, also in nested structs, options and variants of enums. Colours are clamped to what a
+/// has one, also in nested structs, options and variants of enums. Colors are clamped to what a
 /// display shows. Lists and other types are not changed.
 ///
 /// A number that is not finite becomes that of its attribute [`NotFinite`], else that of the outer
 /// type's default. If the default has another variant there, it becomes the least number of the
-/// range, and a colour becomes black.
+/// range, and a color becomes black.
 pub fn clamp_fields<T: PartialReflect + Default>(mut value: T) -> T {
     clamp_parts(&mut value, Some(&T::default()), None);
     value
@@ -93,7 +93,7 @@ macro_rules! impl_sanitized {
     ($($type:ty),+) => {$(
         impl $type {
             /// The settings that are used: every number is clamped to its documented range, and
-            /// colours to what a display shows. What is not finite is replaced by its default.
+            /// colors to what a display shows. What is not finite is replaced by its default.
             #[must_use]
             pub fn sanitized(self) -> Self {
                 $crate::settings::clamp_fields(self)

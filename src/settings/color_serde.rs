@@ -1,7 +1,7 @@
-//! Colours in style files: `"#rrggbb"` or `"#rrggbbaa"` where 8 bits per component
+//! Colors in style files: `"#rrggbb"` or `"#rrggbbaa"` where 8 bits per component
 //! are exact, otherwise four sRGB components (red, green, blue, alpha).
 //!
-//! A colour field of an effect uses it with
+//! A color field of an effect uses it with
 //! `#[serde(with = "bevy_comics::effect::color_serde")]`.
 
 use bevy::color::{Color, LinearRgba, Srgba};
@@ -14,7 +14,7 @@ enum FileColor {
     Components(f32, f32, f32, f32),
 }
 
-/// Writes a colour in its shortest exact form.
+/// Writes a color in its shortest exact form.
 ///
 /// # Errors
 /// If the serializer fails.
@@ -33,7 +33,7 @@ pub fn serialize<S: Serializer>(color: &Color, serializer: S) -> Result<S::Ok, S
     color_serde.serialize(serializer)
 }
 
-/// Reads a colour.
+/// Reads a color.
 ///
 /// # Errors
 /// If the value is neither a hexadecimal string nor four numbers.
@@ -41,12 +41,12 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Color, 
     match FileColor::deserialize(deserializer) {
         Ok(FileColor::Hex(hex)) => Srgba::hex(&hex)
             .map(Color::Srgba)
-            .map_err(|error| D::Error::custom(format!("invalid colour {hex:?}: {error}"))),
+            .map_err(|error| D::Error::custom(format!("invalid color {hex:?}: {error}"))),
         Ok(FileColor::Components(red, green, blue, alpha)) => {
             Ok(Color::srgba(red, green, blue, alpha))
         }
         Err(_) => Err(D::Error::custom(
-            "a colour is \"#rrggbb\", \"#rrggbbaa\" or four sRGB components (red, green, blue, alpha)",
+            "a color is \"#rrggbb\", \"#rrggbbaa\" or four sRGB components (red, green, blue, alpha)",
         )),
     }
 }

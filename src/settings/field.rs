@@ -67,13 +67,13 @@ impl FieldRange {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NotFinite(pub f32);
 
-/// Marks a colour field whose hue matters most: tools show a hue wheel for it.
+/// Marks a color field whose hue matters most: tools show a hue wheel for it.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HueWheel;
 
 /// How a field changes during a transition between two styles.
 ///
-/// Without this attribute, `f32`, `Vec2`, `Vec3` and colours are interpolated, and a field
+/// Without this attribute, `f32`, `Vec2`, `Vec3` and colors are interpolated, and a field
 /// of any other type is a mode: the effect fades out, changes the mode halfway, and
 /// fades in again.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! What all settings have in common: ranges, clamps, blending, colours in files.
+//! What all settings have in common: ranges, clamps, blending, colors in files.
 
 mod blend;
 mod bounds;
@@ -23,12 +23,12 @@ use bevy::{
     math::Vec3,
 };
 
-/// Red, green and blue of a colour in linear light, without alpha: as shaders take it.
+/// Red, green and blue of a color in linear light, without alpha: as shaders take it.
 pub fn linear_rgb(color: Color) -> Vec3 {
     color.to_linear().to_vec3()
 }
 
-/// Lightness, a and b of a colour in `OKLab`, without alpha: as shaders take it.
+/// Lightness, a and b of a color in `OKLab`, without alpha: as shaders take it.
 pub fn oklab(color: Color) -> Vec3 {
     Oklaba::from(color).to_vec3()
 }

@@ -12,7 +12,7 @@ impl ComicStyle {
     /// at 0 and below, the other at 1 and above. As a picture it is continuous
     /// in `t`.
     ///
-    /// * Numbers are interpolated, colours in `OKLab`; an effect that only one
+    /// * Numbers are interpolated, colors in `OKLab`; an effect that only one
     ///   of the two has fades in or out.
     /// * An effect whose mode changes (an operator, the equations, the number of tone bands) fades
     ///   out until `t = 0.5`, changes there, and fades in.

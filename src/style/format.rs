@@ -83,8 +83,8 @@ impl ComicStyle {
         EffectRegistry::built_in().style_from_ron(text)
     }
 
-    /// The text of a `.comic.ron` file that reads back as the same style. Colours
-    /// are written in sRGB, whatever their colour space.
+    /// The text of a `.comic.ron` file that reads back as the same style. Colors
+    /// are written in sRGB, whatever their color space.
     ///
     /// # Errors
     /// [`ComicStyleError::Write`] if a value has no RON form.

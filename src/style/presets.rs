@@ -107,20 +107,20 @@ presets! {
         /// A television toon: strong dark outlines. Flat with
         /// [`ToonScene`](crate::ToonScene).
         SATURDAY_MORNING: "saturday-morning";
-        /// Four tones and heavy outlines under one blue-grey atmosphere.
+        /// Four tones and heavy outlines under one blue-gray atmosphere.
         GRAPHIC_NOVEL: "graphic-novel";
-        /// Even black lines around flat, clean colours, without ink in the shadows.
+        /// Even black lines around flat, clean colors, without ink in the shadows.
         LIGNE_CLAIRE: "ligne-claire";
-        /// A vector poster: four flat tones of each colour, dark blue lines around things.
+        /// A vector poster: four flat tones of each color, dark blue lines around things.
         CLEAR_BANDS: "clear-bands";
         /// Pixel art: flat tones, and black pixels along edges. For a camera with
         /// [`Msaa::Off`](bevy::render::view::Msaa::Off) that draws to a small image.
         PIXEL: "pixel";
         /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
         STORYBOOK: "storybook";
-        /// A naturalist's plate: dots of ink over pale washes of colour, which fade with distance.
+        /// A naturalist's plate: dots of ink over pale washes of color, which fade with distance.
         FIELD_GUIDE: "field-guide";
-        /// A church window: panes of pure colour between thick leads.
+        /// A church window: panes of pure color between thick leads.
         STAINED_GLASS: "stained-glass";
         /// A print of old Edo: prussian blue, persimmon and ochre under indigo lines.
         UKIYO_E: "ukiyo-e";
@@ -128,7 +128,7 @@ presets! {
         SURVEY_MAP: "survey-map";
         /// A manga's page: black line art, shadows in a few screentones, solid blacks.
         MANGA_PAGE: "manga-page";
-        /// A newspaper's comic: four inks on grey paper, out of register.
+        /// A newspaper's comic: four inks on gray paper, out of register.
         NEWSPRINT: "newsprint";
         /// A comic book of the sixties: dots of four inks and brush lines on cheap paper.
         SILVER_AGE: "silver-age";
@@ -150,7 +150,7 @@ presets! {
         PENCIL_STUDY: "pencil-study";
         /// A doodle in blue ballpoint, crossed again and again.
         BALLPOINT: "ballpoint";
-        /// Charcoal: dark strokes over rubbed greys on rough paper.
+        /// Charcoal: dark strokes over rubbed grays on rough paper.
         CHARCOAL: "charcoal";
         /// A study in red chalk on toned paper.
         RED_CHALK: "red-chalk";
@@ -158,9 +158,9 @@ presets! {
         BLUEPRINT: "blueprint";
         /// Ink wash on rice paper, with brush lines that run dry.
         SUMI_E: "sumi-e";
-        /// Washes of the scene's own colours on rough paper, under loose ink.
+        /// Washes of the scene's own colors on rough paper, under loose ink.
         WATERCOLOR: "watercolor";
-        /// Flat patches of opaque colour on rough paper, soft lines in the colours that they
+        /// Flat patches of opaque color on rough paper, soft lines in the colors that they
         /// surround.
         GOUACHE: "gouache";
         /// Dabs of thick paint along the forms, golden lights and violet shadows, no lines.
@@ -177,9 +177,9 @@ presets! {
         COBALT_NIGHT: "cobalt-night";
         /// Violet and magenta tones, glowing cyan lines.
         NEON_NIGHT: "neon-night";
-        /// A film noir: solid shadows and one grey on cold white.
+        /// A film noir: solid shadows and one gray on cold white.
         NOIR: "noir";
-        /// Brown-grey bands, outlines and dark corners.
+        /// Brown-gray bands, outlines and dark corners.
         SILENT_FILM: "silent-film";
     }
 
@@ -189,7 +189,7 @@ presets! {
         SEPIA: "sepia";
         /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
         CRIMSON_DUSK: "crimson-dusk";
-        /// One blue atmosphere for the whole picture, and colours that fade with
+        /// One blue atmosphere for the whole picture, and colors that fade with
         /// distance. \[CS\] Figure 4, row 2.
         MUSEUM_PRINT: "museum-print";
         /// A green atmosphere with solid ink on steep and dark areas. \[CS\] Figure 4,

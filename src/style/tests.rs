@@ -404,7 +404,7 @@ fn partial_styles_are_files_too() {
     let written = style.to_ron().expect("writable");
     assert_eq!(written, made.to_ron().expect("writable"));
     assert_eq!(style.off, made.off);
-    // Colours come back in another space, so the text is compared.
+    // Colors come back in another space, so the text is compared.
     let again = ComicStyle::from_ron(&written).expect("readable");
     assert_eq!(again.to_ron().expect("writable"), written);
     // A complete style needs no entry for what is off.

@@ -13,7 +13,7 @@ use crate::settings::{FieldRange, NotFinite, impl_sanitized};
 /// where there is full detail, this one where there is none (X-Toon: Barla, Thollot and Markosian
 /// 2006).
 ///
-/// Between the two, stops move, soften and change their colours, which are mixed in `OKLab`. The
+/// Between the two, stops move, soften and change their colors, which are mixed in `OKLab`. The
 /// first stop becomes the first one, and so on. The shorter ramp's last tone takes the place of
 /// those that it lacks.
 #[derive(Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -74,7 +74,7 @@ fn hatch_cover(at: HatchPlace, tone: f32) -> f32 {
 #endif
 }
 
-// The colour of a surface with its strokes. `fraction`: of all light, what arrives.
+// The color of a surface with its strokes. `fraction`: of all light, what arrives.
 fn with_hatching(color: vec3<f32>, fraction: f32, at: HatchPlace) -> vec3<f32> {
     let tone = hatch_tone(hatch, fraction);
     let drawn = with_strokes(hatch.strokes, color, tone, hatch_cover(at, tone));

@@ -33,7 +33,7 @@ fn facing(s: ToonLight, cosine: f32, width: f32) -> f32 {
 }
 
 // Change of a filtered shadow over a pixel, from the shadow at the pixel and at two
-// neighbours.
+// neighbors.
 fn slope_over_pixel(here: f32, beside: f32, below: f32) -> f32 {
     return abs(beside - here) + abs(below - here);
 }

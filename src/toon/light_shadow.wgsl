@@ -2,7 +2,7 @@
 
 // The shadow maps of lights, read as the engine reads them (`fetch_point_shadow`, `fetch_spot_shadow`,
 // `fetch_directional_shadow`), with the slope of the shadow from the same texels. There are no derivatives:
-// neighbouring pixels may see other lights, or lie on other surfaces.
+// neighboring pixels may see other lights, or lie on other surfaces.
 
 #ifdef SLOPED_SHADOWS
 #import bevy_pbr::{

@@ -41,7 +41,7 @@ fn light_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
     return shadows::fetch_point_shadow(id, place, s.mesh_normal, s.pixel);
 }
 
-// The same with a hard edge. Neighbouring pixels may see other lights, so there are no
+// The same with a hard edge. Neighboring pixels may see other lights, so there are no
 // derivatives: filters whose slope is not known are read for them, too.
 fn light_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
 #ifdef SLOPED_SHADOWS
@@ -63,7 +63,7 @@ fn light_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
 }
 
 // The shadow of a directional light at the surface with a hard edge; 1 if it has no shadow map. All
-// pixels must run it: filters whose slope is not known have that of neighbouring pixels.
+// pixels must run it: filters whose slope is not known have that of neighboring pixels.
 fn directional_shadow(id: u32, s: Surface) -> f32 {
     let flags = view_bindings::lights.directional_lights[id].flags;
     let maps = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT;

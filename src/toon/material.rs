@@ -39,10 +39,10 @@ use crate::{
 /// image = ambient + sum over lights of (1 - S) * light * (k_d + specular)
 /// ```
 ///
-/// `k_d` is the base colour. `S` is the shadow, with a hard, anti-aliased edge: it is
+/// `k_d` is the base color. `S` is the shadow, with a hard, anti-aliased edge: it is
 /// [`shadow_strength`](ToonLight::shadow_strength) where the surface faces away from the light
 /// (form shadow) or where the light's shadow map says that the light does not reach it (cast
-/// shadow), otherwise 0. The formula has no N·L term, so lit areas of one base colour are uniform;
+/// shadow), otherwise 0. The formula has no N·L term, so lit areas of one base color are uniform;
 /// a [`Ramp`] gives them more tones. All directional, point, spot and rectangular lights are used,
 /// with light textures and contact shadows (\[CL\] 2.2, 2.3; Decaudin 1996).
 ///
@@ -51,9 +51,9 @@ use crate::{
 /// lower. On meshes with a lightmap, lights that do not affect lightmapped meshes only draw
 /// highlights.
 ///
-/// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit` work as in
-/// the standard material. Metals are drawn as paint of their base colour, with highlights of that
-/// colour. Reflections of environment maps and of the screen, transmission, clearcoat and
+/// Textures, normal maps, vertex colors, alpha modes, emission, decals, fog and `unlit` work as in
+/// the standard material. Metals are drawn as paint of their base color, with highlights of that
+/// color. Reflections of environment maps and of the screen, transmission, clearcoat and
 /// anisotropy are not drawn; a warning names the first material that asks for one of the last
 /// three, and the first camera with `ScreenSpaceReflections`. The light is computed in the forward
 /// pass:
@@ -105,14 +105,14 @@ pub struct ToonLight {
     /// material. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub flat_environment: f32,
-    /// Whether the alpha of vertex colours, painted by an artist, says how easily a vertex is lit:
+    /// Whether the alpha of vertex colors, painted by an artist, says how easily a vertex is lit:
     /// 0.5 is neutral, 0 is never lit, 1 is lit except where it faces away or lies in a cast
     /// shadow. For opaque materials; in others, alpha is still opacity. Default: `false`.
     pub vertex_threshold: bool,
     /// How easily places are lit, as an image: its red channel means what the alpha of vertices
     /// does for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
     ///
-    /// The image lies on the texture coordinates of the base colour and is read with the sampler of
+    /// The image lies on the texture coordinates of the base color and is read with the sampler of
     /// its texture; meshes without coordinates do not read it. Load it with `is_srgb: false`: in
     /// images in sRGB, 188 of 255 is neutral. Its format must be one that can be filtered, which
     /// 32-bit floating-point numbers cannot. With `vertex_threshold`, what both add to the cosine
@@ -143,7 +143,7 @@ pub struct ToonLight {
     /// of a ramp. Ambient light and lightmaps always arrive.
     ///
     /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
-    /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
+    /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colors before tonemapping, and
     /// [`at_near`](Hatching::at_near) is the factor of the darkness at all distances.
     /// Dots stay on meshes as strokes do. [`at_far`](Hatching::at_far),
     /// [`source`](Hatching::source) and [`simplify_small`](Hatching::simplify_small) have no

@@ -68,8 +68,8 @@ pub enum ProxyShape {
     /// The mesh without its details: faces, hair and cloth.
     ///
     /// The normals of the triangles around each vertex are averaged, and then repeatedly with those
-    /// of its neighbours. Vertices at the same place are treated as one, so that seams and hard
-    /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided
+    /// of its neighbors. Vertices at the same place are treated as one, so that seams and hard
+    /// edges disappear. Neighbors are weighted so that it does not matter how an area is divided
     /// into triangles, and a ball keeps its normals. Normals follow bones and morph targets.
     ///
     /// They are made in a task when a mesh first has such a material, and kept in a vertex
@@ -77,7 +77,7 @@ pub enum ProxyShape {
     /// whose data is only on the GPU, the mesh's own normals are used; the log says so of the first
     /// one of these. If several materials share a mesh, the largest number of rounds is used.
     Smoothed {
-        /// How often neighbours are averaged: 0 is smooth shading, more remove larger details, as
+        /// How often neighbors are averaged: 0 is smooth shading, more remove larger details, as
         /// wide as so many edges of the mesh. Range 0 to 50.
         #[reflect(@FieldRange::linear(0.0, 50.0))]
         rounds: u32,

@@ -15,7 +15,7 @@ struct Proxy {
     per_log: f32,
 }
 
-// Normal of the ellipsoid around the centre that a place lies on, not of length 1. Both in the
+// Normal of the ellipsoid around the center that a place lies on, not of length 1. Both in the
 // space of the mesh.
 fn proxy_normal(f: Proxy, place: vec3<f32>) -> vec3<f32> {
     return (place - f.center) * f.weights;

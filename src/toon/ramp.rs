@@ -43,7 +43,7 @@ pub struct Ramp {
     pub stops: Vec<RampStop>,
     /// What the ramp is applied to. Default: [`RampMode::LightFraction`].
     pub mode: RampMode,
-    /// What the colours of the stops are. Default: [`RampBlend::Multiply`].
+    /// What the colors of the stops are. Default: [`RampBlend::Multiply`].
     pub blend: RampBlend,
     /// How much of the strength of the light is kept in [`RampMode::LightFraction`]: the exponent
     /// of the luminance. 0: all places are equally bright, whatever the lights and the exposure
@@ -72,7 +72,7 @@ pub enum RampMode {
     Brightest,
 }
 
-/// What the colours of a [`Ramp`] are.
+/// What the colors of a [`Ramp`] are.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -80,7 +80,7 @@ pub enum RampBlend {
     /// Factors of the light: white leaves it as it is. Ambient light is added in full.
     #[default]
     Multiply,
-    /// Colours of the surface, in place of its base colour. Light and ambient light shine on
+    /// Colors of the surface, in place of its base color. Light and ambient light shine on
     /// them.
     Absolute,
 }

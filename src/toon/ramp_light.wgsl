@@ -96,7 +96,7 @@ fn tone_of(angle: vec2<f32>, lit: f32, detail: f32) -> vec3<f32> {
     return mix(full_tone(ramp), color, strength);
 }
 
-// The colour of a surface in a tone. `direct` is light of light sources, `even` light from
+// The color of a surface in a tone. `direct` is light of light sources, `even` light from
 // all around.
 fn toned(base: vec3<f32>, color: vec3<f32>, direct: vec3<f32>, even: vec3<f32>) -> vec3<f32> {
 #ifdef RAMP_ABSOLUTE

@@ -18,7 +18,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// tones between rows are mixed in linear light. Without that axis, only the first row is used.
 ///
 /// The image is 2 to [`LARGEST`](Self::LARGEST) texels wide and 1 to as many high, in a format
-/// without compression; images in sRGB and in linear light are both read correctly. Colours are
+/// without compression; images in sRGB and in linear light are both read correctly. Colors are
 /// clamped to what a display shows, components that are not finite are 0, and alpha is ignored. The
 /// image must be kept in the main world, as loaded ones are
 /// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)). When it changes, the tones follow a

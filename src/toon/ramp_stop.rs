@@ -17,7 +17,7 @@ pub struct RampStop {
     /// lowest stop has no edge. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub at: f32,
-    /// Colour of the tone. Components are clamped to what a display shows; alpha is ignored.
+    /// Color of the tone. Components are clamped to what a display shows; alpha is ignored.
     /// Default: white.
     #[serde(with = "color_serde")]
     pub color: Color,

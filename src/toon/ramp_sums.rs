@@ -20,7 +20,7 @@ use crate::settings::clamp_or_default;
 /// The sums of an image: texel `k` of a row is the sum of the first `k` texels of that row, in
 /// linear light.
 ///
-/// Texels are rounded so that every sum is exact: a flat part of a row has one colour, wherever it
+/// Texels are rounded so that every sum is exact: a flat part of a row has one color, wherever it
 /// begins. With 1024 texels, they are multiples of 2^-14.
 fn sums_of(image: &Image) -> Result<Image, String> {
     let [width, height] = size_of(image)?;
@@ -72,7 +72,7 @@ fn size_of(image: &Image) -> Result<[u32; 2], String> {
     }
     let format = texture.format;
     if format.is_depth_stencil_format() || format.is_multi_planar_format() {
-        return Err(format!("its format has no colours: {format:?}"));
+        return Err(format!("its format has no colors: {format:?}"));
     }
     let Ok(texel) = format.pixel_size() else {
         return Err(format!("its format is compressed: {format:?}"));

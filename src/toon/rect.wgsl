@@ -3,7 +3,7 @@
 // Light of a rectangle: pure functions.
 
 struct Rect {
-    // From the centre to the middle of two sides.
+    // From the center to the middle of two sides.
     half_right: vec3<f32>,
     half_up: vec3<f32>,
 }
@@ -25,7 +25,7 @@ fn direction_of(v: vec3<f32>) -> vec3<f32> {
 // Light of a rectangle of luminance 1 / pi at a place, as a vector: the light at a surface
 // that faces along the vector is its length, 0 to 1 (Lambert's formula). A surface with the
 // normal n, whose horizon the rectangle is above, has its dot product with n. `at` is the
-// place, relative to the centre.
+// place, relative to the center.
 fn rect_light(rect: Rect, at: vec3<f32>) -> vec3<f32> {
     let a = direction_of(rect.half_right - rect.half_up - at);
     let b = direction_of(rect.half_right + rect.half_up - at);
@@ -38,7 +38,7 @@ fn rect_light(rect: Rect, at: vec3<f32>) -> vec3<f32> {
 }
 
 // The point of the rectangle that a mirror at `at` shows along `reflected`, or the one that
-// is nearest to it; relative to the centre, as `at`.
+// is nearest to it; relative to the center, as `at`.
 fn mirrored(rect: Rect, at: vec3<f32>, reflected: vec3<f32>) -> vec3<f32> {
     let normal = direction_of(cross(rect.half_right, rect.half_up));
     let height = -dot(at, normal);

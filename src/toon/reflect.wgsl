@@ -19,7 +19,7 @@ fn unshadowed(s: Surface, light: Arriving) -> f32 {
     return 1.0 - max(form_shadow, cast_shadow);
 }
 
-// Highlight of a light, as a multiple of it, without the colour of the surface. `left` is what
+// Highlight of a light, as a multiple of it, without the color of the surface. `left` is what
 // shadows leave of the light.
 fn highlight_of(s: Surface, light: Arriving, left: f32) -> f32 {
     let most = light.specular * left;

@@ -17,7 +17,7 @@ use crate::settings::{FieldRange, NotFinite, color_serde, impl_sanitized, linear
 pub struct Rim {
     /// How wide it is. Default: [`RimWidth::Facing`].
     pub width: RimWidth,
-    /// The colour of the rim before tonemapping, whatever the light is. Components are clamped to
+    /// The color of the rim before tonemapping, whatever the light is. Components are clamped to
     /// what a display shows; alpha is ignored. Default: white.
     #[serde(with = "color_serde")]
     pub color: Color,

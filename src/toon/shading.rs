@@ -209,8 +209,8 @@ impl ToonShading {
         Ok(read.0)
     }
 
-    /// The text of a `.toon.ron` file that reads back as the same shading. Colours are written in
-    /// sRGB, whatever their colour space.
+    /// The text of a `.toon.ron` file that reads back as the same shading. Colors are written in
+    /// sRGB, whatever their color space.
     ///
     /// # Errors
     /// [`ToonShadingError::Write`] if a value has no RON form.

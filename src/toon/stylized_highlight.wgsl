@@ -130,16 +130,16 @@ fn turned(g: StylizedHighlight, v: vec2<f32>) -> vec2<f32> {
     return vec2(g.turn.x * v.x + g.turn.y * v.y, g.turn.x * v.y - g.turn.y * v.x);
 }
 
-// Where the centre of the sign is: at most 63 degrees from the plain highlight.
-fn centre_of(g: StylizedHighlight, radius: f32) -> vec2<f32> {
-    let centre = g.offset * radius;
-    return centre * min(1.0, 2.0 / max(length(centre), 1e-6));
+// Where the center of the sign is: at most 63 degrees from the plain highlight.
+fn center_of(g: StylizedHighlight, radius: f32) -> vec2<f32> {
+    let center = g.offset * radius;
+    return center * min(1.0, 2.0 / max(length(center), 1e-6));
 }
 
 // Distance of a place in the plane of half vectors from the border of the sign, in units of its
 // radius. `radius` is that of the plain highlight.
 fn sign_distance(g: StylizedHighlight, radius: f32, place: vec2<f32>) -> f32 {
-    let y = turned(g, place - centre_of(g, radius)) / (g.scale * g.size * radius);
+    let y = turned(g, place - center_of(g, radius)) / (g.scale * g.size * radius);
     return shape_distance(g, select(y, abs(y) - g.split, g.split > vec2(0.0)));
 }
 
@@ -151,8 +151,8 @@ fn moved(g: StylizedHighlight, frame: Frame, radius: f32, half_vector: vec3<f32>
     var h = half_vector;
     h = normalize(h - shrink.x * dot(h, right) * right);
     h = normalize(h - shrink.y * dot(h, up) * up);
-    let centre = centre_of(g, radius);
-    h = normalize(h + centre.x * frame.right + centre.y * frame.up);
+    let center = center_of(g, radius);
+    h = normalize(h + center.x * frame.right + center.y * frame.up);
     let apart = g.split * radius * sign(vec2(dot(h, right), dot(h, up)));
     h = normalize(h - apart.x * right - apart.y * up);
     let tangential = vec2(dot(h, right), dot(h, up));
@@ -176,7 +176,7 @@ fn stylized_highlight_distance(g: StylizedHighlight, frame: Frame, radius: f32, 
     return sign_distance(g, radius, place_of(frame, normal, half_vector));
 }
 
-// How much of a pixel the sign covers, from the distance at the pixel and at two neighbours. A
+// How much of a pixel the sign covers, from the distance at the pixel and at two neighbors. A
 // sign that is smaller than a pixel fades.
 fn stylized_highlight_coverage(g: StylizedHighlight, here: f32, beside: f32, below: f32) -> f32 {
     let pixel = max(length(vec2(beside - here, below - here)), 1e-5);

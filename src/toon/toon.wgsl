@@ -66,7 +66,7 @@
 #ifdef THRESHOLD_MAP
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var threshold_map: texture_2d<f32>;
 
-// The bias that the map gives, read as the base colour is. All pixels must run it: the mip level is
+// The bias that the map gives, read as the base color is. All pixels must run it: the mip level is
 // found with derivatives.
 fn mapped_bias(pbr: PbrInput, in: VertexOutput) -> f32 {
 #ifdef STANDARD_MATERIAL_BASE_COLOR_UV_B
@@ -223,7 +223,7 @@ fn toon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
 #endif
 #endif
     let base = in.material.base_color;
-    // Colour of the highlight: the base colour of a metal; otherwise white at the
+    // Color of the highlight: the base color of a metal; otherwise white at the
     // default reflectance of 0.5.
     let tint = mix(min(2.0 * in.material.reflectance, vec3(1.0)), base.rgb, in.material.metallic);
     var color = reflected(lit.sum, base.rgb, even, tint * specular_of(lit.specular, s));

@@ -9,7 +9,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 
 struct Sum {
-    // Light times pi, without the colour of the surface.
+    // Light times pi, without the color of the surface.
     color: vec3<f32>,
 }
 

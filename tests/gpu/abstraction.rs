@@ -60,7 +60,7 @@ fn spread([r, g, b]: [u8; 3]) -> u8 {
     r.max(g).max(b) - r.min(g).min(b)
 }
 
-/// Near things have their colours and many bands; far ones are grey and have few.
+/// Near things have their colors and many bands; far ones are gray and have few.
 #[test]
 fn far_things_are_paler_and_have_fewer_tones() {
     assert_far_things_are_paler(&[Msaa::Off, Msaa::Sample4], &[Msaa::Off]);
@@ -152,9 +152,9 @@ fn ink(small: &mut Small) -> [usize; 2] {
         let middle = picture.height() / 2;
         let side = usize::from(x > picture.width() / 2);
         // 0.22 of the distance from the middle of the view.
-        let centre = [31, 65][side];
+        let center = [31, 65][side];
         let is_near_edge = y.abs_diff(middle) < picture.height() / 4;
-        if is_near_edge && x.abs_diff(centre) < 5 && pixel.0[0] < 60 {
+        if is_near_edge && x.abs_diff(center) < 5 && pixel.0[0] < 60 {
             count[side] += 1;
         }
     }
@@ -223,7 +223,7 @@ fn far_edges_must_be_stronger() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Objects with an abstraction of their own have its colours, at every distance.
+/// Objects with an abstraction of their own have its colors, at every distance.
 #[test]
 fn objects_have_colors_of_their_own_level() {
     let offset = |offset| ObjectSimplification {
@@ -286,7 +286,7 @@ fn objects_have_colors_of_their_own_level() {
 /// One figure has one level: the lines of an object that extends in depth appear at the same step,
 /// between those at which they appear in its two halves.
 #[test]
-fn lines_of_an_object_follow_its_centre() {
+fn lines_of_an_object_follow_its_center() {
     // With the same ids of objects each time: the thresholds of a whole are equal to a step at some
     // ids only.
     let mut small = before_white(Small::alone(options(UVec2::new(96, 64)), Msaa::Off));

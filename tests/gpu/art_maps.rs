@@ -91,7 +91,7 @@ fn walls_have_the_tone_of_their_light(walls: &[(f32, &[f32])], gammas: &[&[f32]]
     assert_eq!(small.errors(), 0);
 }
 
-/// Strokes of a map are ink and paper, not grey, and stay about as wide while things come nearer.
+/// Strokes of a map are ink and paper, not gray, and stay about as wide while things come nearer.
 #[test]
 fn strokes_of_maps_have_their_width_at_every_size() {
     let mut small = dim();

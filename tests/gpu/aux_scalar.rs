@@ -83,7 +83,7 @@ fn small() -> Small {
 
 /// Everything is exact: the picture has 11 bits before and after.
 #[test]
-fn numbers_are_beside_their_colours() {
+fn numbers_are_beside_their_colors() {
     let mut small = small();
     small.insert(ShownNumbers { scale: 0.5 }).settle();
     assert!(small.ran(ComicsStage::of::<ShownNumbers>()));
@@ -97,7 +97,7 @@ fn numbers_are_beside_their_colours() {
         let want = [number, before[0], read.pixels[i][1]];
         assert_eq!(found[..3], want, "({x}, {y})");
     }
-    // The one after it reads what it has drawn; a colour effect comes before both.
+    // The one after it reads what it has drawn; a color effect comes before both.
     let second = MoreNumbers { scale: 0.25 };
     small.insert((Desaturation::default(), second)).settle();
     let (_, again) = small.pass();

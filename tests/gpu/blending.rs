@@ -302,7 +302,7 @@ fn a_style_stays_until_the_next_one_is_compiled() {
     };
     small.insert(Desaturation::default());
     until_complete(&mut small);
-    let grey = still(&mut small);
+    let gray = still(&mut small);
     small.insert(Contours {
         width: 3.3,
         opacity_fade: 0.2,
@@ -312,19 +312,19 @@ fn a_style_stays_until_the_next_one_is_compiled() {
     for _ in 0..4000 {
         small.headless.step(1);
         frames.push(small.picture());
-        if frames.last() != Some(&grey) {
+        if frames.last() != Some(&gray) {
             break;
         }
     }
     until_complete(&mut small);
     let inked = still(&mut small);
-    assert_ne!(inked, grey);
-    let waited = frames.iter().filter(|frame| **frame == grey).count();
+    assert_ne!(inked, gray);
+    let waited = frames.iter().filter(|frame| **frame == gray).count();
     for (i, frame) in frames.iter().enumerate() {
         assert!(
-            *frame == grey || *frame == inked,
+            *frame == gray || *frame == inked,
             "frame {i} shows neither look: {:.3} codes from the old, {:.3} from the new",
-            mean_apart(frame, &grey),
+            mean_apart(frame, &gray),
             mean_apart(frame, &inked)
         );
     }

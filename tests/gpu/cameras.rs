@@ -190,10 +190,10 @@ fn ids_tell_what_a_camera_that_loads_depth_has_drawn() {
     assert_eq!(small.errors(), 0);
 }
 
-/// A picture of half the opacity is half of the opaque one after every colour effect, whose arithmetic is
+/// A picture of half the opacity is half of the opaque one after every color effect, whose arithmetic is
 /// not linear.
 #[test]
-fn colour_effects_change_what_is_seen_of_a_surface() {
+fn color_effects_change_what_is_seen_of_a_surface() {
     let mut small = Small::new(size(), Msaa::Off);
     small.clear();
     small.insert(overlay_camera(0));
@@ -291,7 +291,7 @@ fn with_bare_cube(
 /// Where the picture shows what is not in the prepass, `NoLines` draws no lines of what is behind it,
 /// and `Plain` changes nothing.
 #[test]
-fn what_is_not_in_the_prepass_keeps_its_colours() {
+fn what_is_not_in_the_prepass_keeps_its_colors() {
     let plugin = MaterialPlugin::<Bare>::default();
     let mut small = Small::with_plugins(options(size()), Msaa::Off, plugin);
     for msaa in [Msaa::Off, Msaa::Sample4] {
@@ -380,7 +380,7 @@ fn an_overlay_is_drawn_over_the_comic() {
 /// The pixels of a quad may belong to two viewports: what is beside a view that begins at an odd pixel does not
 /// change it.
 #[test]
-fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbour() {
+fn a_viewport_at_an_odd_pixel_reads_no_pixel_of_its_neighbor() {
     let mut small = Small::new(size(), Msaa::Off);
     // Bands read how lightness changes over a pixel.
     let bands = ToneBands {
@@ -417,7 +417,7 @@ fn bent(place: Vec2, lens: &LensDistortion) -> Vec2 {
     place.clamp(Vec2::ZERO, Vec2::ONE)
 }
 
-/// An empty second camera with `LensDistortion` bends the finished comic, lines and colours together.
+/// An empty second camera with `LensDistortion` bends the finished comic, lines and colors together.
 #[test]
 fn an_empty_camera_bends_the_finished_comic() {
     let size = UVec2::new(192, 128);
@@ -552,7 +552,7 @@ fn a_mirrored_view_is_the_mirrored_picture() {
     let is_other =
         |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 2);
     let others = pixels.filter(is_other).count();
-    // Silhouettes cover other pixels where a border passes through the centre of one.
+    // Silhouettes cover other pixels where a border passes through the center of one.
     assert!(others < (size.x * size.y / 500) as usize, "{others}");
     assert_eq!(small.errors(), 0);
 }

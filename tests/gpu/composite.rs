@@ -70,7 +70,7 @@ fn a_split_shows_both_pictures_to_the_bit() {
     assert_eq!(small.errors(), 0);
 }
 
-fn is_grey(picture: &RgbaImage) -> bool {
+fn is_gray(picture: &RgbaImage) -> bool {
     picture.pixels().all(|p| p[0] == p[1] && p[1] == p[2])
 }
 
@@ -110,13 +110,13 @@ fn assert_views_of_the_scene(msaa: Msaa) {
     let show = |small: &mut Small, view| show(small, view, &original);
     // No effect on the camera: a debug view requests what it needs.
     let map = show(&mut small, DebugView::DepthMap);
-    assert!(is_grey(&map) && small.ran(ComicsStage::DepthRange));
+    assert!(is_gray(&map) && small.ran(ComicsStage::DepthRange));
     let shades = codes(&map);
     assert!(shades.contains(&[255; 3]), "the sky is far");
     assert!(shades.iter().any(|s| s[0] < 12), "something is near");
     assert!(shades.len() > 20, "and much in between");
     let raw = show(&mut small, DebugView::RawRange);
-    assert!(is_grey(&raw));
+    assert!(is_gray(&raw));
     // In the one picture near is brighter, in the other far.
     for (a, b) in map.pixels().zip(raw.pixels()) {
         if a[0] < 8 {
@@ -129,7 +129,7 @@ fn assert_views_of_the_scene(msaa: Msaa) {
     for view in [DebugView::Silhouettes, DebugView::Creases] {
         let lines = show(&mut small, view);
         let dark = lines.pixels().filter(|p| p[0] < 128).count();
-        assert!(is_grey(&lines) && dark > 20, "{view:?}: {dark} dark pixels");
+        assert!(is_gray(&lines) && dark > 20, "{view:?}: {dark} dark pixels");
         assert!(
             dark < (size().x * size().y / 3) as usize,
             "{view:?} is mostly paper"
@@ -137,7 +137,7 @@ fn assert_views_of_the_scene(msaa: Msaa) {
     }
     let ids = show(&mut small, DebugView::ObjectIds);
     assert!(small.ran(ComicsStage::ObjectIds));
-    assert!(codes(&ids).len() >= 4, "objects have colours of their own");
+    assert!(codes(&ids).len() >= 4, "objects have colors of their own");
     assert!(codes(&ids).contains(&[0; 3]), "the sky is no object");
 }
 
@@ -147,15 +147,15 @@ fn assert_views_of_effects(msaa: Msaa) {
     let show = |small: &mut Small, view| show(small, view, &original);
     let map = show(&mut small, DebugView::DepthMap);
     let bands = show(&mut small, DebugView::Effect("tone_bands"));
-    assert!(is_grey(&bands) && codes(&bands).len() < 40);
+    assert!(is_gray(&bands) && codes(&bands).len() < 40);
     let kept = show(&mut small, DebugView::Saturation);
-    assert_eq!(codes(&kept).len(), 1, "no style takes colour away");
+    assert_eq!(codes(&kept).len(), 1, "no style takes color away");
     let same = show(&mut small, DebugView::Difference);
     assert_eq!(codes(&same), [[0; 3]].into(), "no style is no difference");
 
     small.insert((Desaturation::default(), ToneBands::default()));
     let kept = show(&mut small, DebugView::Saturation);
-    assert!(is_grey(&kept) && codes(&kept).len() > 20);
+    assert!(is_gray(&kept) && codes(&kept).len() > 20);
     let apart = show(&mut small, DebugView::Difference);
     assert!(codes(&apart).len() > 20);
     // A weight does not hide a debug view; a split applies to it.

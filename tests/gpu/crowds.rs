@@ -140,7 +140,7 @@ fn assert_small_features_lose_most(crowds: &[[f32; 2]], widths: &[f32]) {
         put_crowd(&mut small, many, 0.0);
         put_plates(&mut small, 0.0, few, 0.0);
         for &width in widths {
-            // The inner parts, and at least half a neighbourhood of the budget away from the other.
+            // The inner parts, and at least half a neighborhood of the budget away from the other.
             let parts = [12..36, 60..84];
             let [less, all] = [0.2, 1.0]
                 .map(|budget| coverage(&mut small, parts.clone(), budgeted(width, budget)));
@@ -211,7 +211,7 @@ fn lone_lines_do_not_change() {
     }
 }
 
-/// The forest at 500 metres, white before a white sky, in a picture of 16:9.
+/// The forest at 500 meters, white before a white sky, in a picture of 16:9.
 fn far_forest(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
     small.empty_view(Msaa::Off, Color::WHITE);
@@ -231,7 +231,7 @@ fn far_forest(size: UVec2) -> Small {
     small
 }
 
-/// A forest at 500 metres, whose trees are 4 to 25 pixels high, is a tone and no black bar: of
+/// A forest at 500 meters, whose trees are 4 to 25 pixels high, is a tone and no black bar: of
 /// each area of 32 x 32 pixels lines cover at most their budget; without it, they cover more than
 /// the default.
 #[test]

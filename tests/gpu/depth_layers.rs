@@ -260,7 +260,7 @@ fn a_figure_is_in_one_layer_and_the_ground_in_all() {
     assert_eq!(by_object, small.picture());
 }
 
-/// D of its centre changes by up to 0.02 from frame to frame, at the border.
+/// D of its center changes by up to 0.02 from frame to frame, at the border.
 #[test]
 fn an_object_that_jitters_at_a_border_stays_in_its_layer() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -285,7 +285,7 @@ fn an_object_that_jitters_at_a_border_stays_in_its_layer() {
     }
 }
 
-/// The place of a box is that of its centre, also of an orthographic view, of one with samples,
+/// The place of a box is that of its center, also of an orthographic view, of one with samples,
 /// and far from the origin.
 #[test]
 fn objects_have_layers_in_other_views_too() {
@@ -332,7 +332,7 @@ fn line_widths(picture: &image::RgbaImage) -> [f64; 3] {
     rows(picture).map(|y| (0..picture.width() / 2).map(|x| ink(x, y)).sum())
 }
 
-/// How many pixels across the left edges of the cards have the colours wanted.
+/// How many pixels across the left edges of the cards have the colors wanted.
 fn colored(picture: &image::RgbaImage, wanted: [[u8; 3]; 3]) -> [usize; 3] {
     let rows = rows(picture);
     std::array::from_fn(|k| {
@@ -356,14 +356,14 @@ const CROSSED: [Division; 2] = [
 ];
 
 #[test]
-fn lines_have_the_width_opacity_and_colour_of_their_layer() {
+fn lines_have_the_width_opacity_and_color_of_their_layer() {
     assert_lines_of_layers(Msaa::Off, &PAIRED);
     assert_lines_of_layers(Msaa::Sample4, &CROSSED);
 }
 
 #[test]
 #[ignore = "long: every division of layers at every sample count"]
-fn lines_have_the_width_opacity_and_colour_of_every_kind_of_layer() {
+fn lines_have_the_width_opacity_and_color_of_every_kind_of_layer() {
     assert_lines_of_layers(Msaa::Off, &CROSSED);
     assert_lines_of_layers(Msaa::Sample4, &PAIRED);
 }
@@ -424,7 +424,7 @@ fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
         // Opacity is stored in eight bits, in draws of a byte of ink.
         let is_right = |k: usize| (found[k] - widths[k]).abs() < 0.06;
         assert!((0..3).all(is_right), "{what}: {found:?}, not {widths:?}");
-        // A line has the colour of the layer of the card in front, on both sides of its edge:
+        // A line has the color of the layer of the card in front, on both sides of its edge:
         // 4 pixels cover at least 3 of a row.
         let counts = colored(&lined(&mut small, divided(tinted), flip), colors);
         assert!(counts.iter().all(|n| *n >= 3), "{what}: {counts:?}");

@@ -5,7 +5,7 @@ use bevy_comics::{cameras::BeyondPrepass, objects::Backdrop};
 
 use crate::prelude::*;
 
-/// A sky around the small scene, with the colour of its background.
+/// A sky around the small scene, with the color of its background.
 fn dome(small: &mut Small) -> Entity {
     let material = StandardMaterial {
         cull_mode: None,
@@ -18,7 +18,7 @@ fn dome(small: &mut Small) -> Entity {
     )
 }
 
-/// Lines and colours by distance.
+/// Lines and colors by distance.
 fn style() -> ComicStyle {
     ComicStyle::new()
         .with(Desaturation {

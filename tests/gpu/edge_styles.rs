@@ -218,7 +218,7 @@ fn contacts_are_edges_between_objects() {
     );
 }
 
-/// The colour of the upper edge of a box, with light from this direction.
+/// The color of the upper edge of a box, with light from this direction.
 fn highlight(
     small: &mut Small,
     source: CreaseSource,

@@ -44,9 +44,9 @@ fn full() -> ComicStyle {
         .with(Outlines::default())
 }
 
-/// D = 0 everywhere. Tone bands change flat colours by design.
+/// D = 0 everywhere. Tone bands change flat colors by design.
 #[test]
-fn a_flat_wall_keeps_its_colour_and_has_no_line() {
+fn a_flat_wall_keeps_its_color_and_has_no_line() {
     let mut small = bare(UVec2::new(40, 30));
     for distance in [0.2f32, 3.0, 500.0, 90_000.0] {
         empty(&mut small);
@@ -58,7 +58,7 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
         assert_eq!(spread(&picture), 0, "a wall at {distance}");
         let [found, before] = [&picture, &original].map(|picture| picture.get_pixel(0, 0).0);
         let same = (0..3).all(|i| found[i].abs_diff(before[i]) <= 1);
-        assert!(same, "a wall at {distance} changed its colour");
+        assert!(same, "a wall at {distance} changed its color");
     }
 }
 
@@ -91,14 +91,14 @@ fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
 }
 
 #[test]
-fn greys_stay_grey_under_the_faithful_equations() {
+fn grays_stay_gray_under_the_faithful_equations() {
     let mut small = bare(UVec2::new(60, 40));
-    for (distance, grey) in [(4.0, 0.1f32), (7.0, 0.5), (10.0, 0.9)] {
+    for (distance, gray) in [(4.0, 0.1f32), (7.0, 0.5), (10.0, 0.9)] {
         wall(
             &mut small,
             3.0,
             distance,
-            unlit(Color::srgb(grey, grey, grey)),
+            unlit(Color::srgb(gray, gray, gray)),
         );
     }
     small.camera_settings().clear_color = Color::srgb(0.3, 0.3, 0.3).into();
@@ -115,8 +115,8 @@ fn greys_stay_grey_under_the_faithful_equations() {
         let style = ComicStyle::new().with(Desaturation::SQUARE_ROOT);
         let picture = small.shot(&style.with(colorization));
         let mut pixels = picture.pixels();
-        let grey = pixels.all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
-        assert!(grey, "{mode:?} tinted a grey");
+        let gray = pixels.all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
+        assert!(gray, "{mode:?} tinted a gray");
     }
 }
 
@@ -141,10 +141,10 @@ fn bright_light_grows_with_its_gain() {
     }
 }
 
-/// A red pane close to the camera is grey where the wall behind it is far, and red where that is
+/// A red pane close to the camera is gray where the wall behind it is far, and red where that is
 /// near.
 #[test]
-fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
+fn a_transparent_surface_is_colored_by_the_depth_behind_it() {
     let mut small = bare(UVec2::new(60, 40));
     for (size, distance) in [(400.0, 100.0), (0.4, 1.0)] {
         wall(
@@ -168,6 +168,6 @@ fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
     assert!(row[30] > 60, "before the near wall: {row:?}");
     assert!(
         row.iter().filter(|s| **s > 20).count() < 24,
-        "the pane kept its colour before the far wall: {row:?}"
+        "the pane kept its color before the far wall: {row:?}"
     );
 }

@@ -79,7 +79,7 @@ fn iso_lines_stay_on_surfaces_when_the_origin_moves() {
     }
 }
 
-/// Truth: 10,000 kilometres away, marks are where the geometry is, and stay there while the camera moves by a
+/// Truth: 10,000 kilometers away, marks are where the geometry is, and stay there while the camera moves by a
 /// hundredth of a unit. Walls that face an axis of strokes have those of the diagonals.
 #[test]
 fn marks_far_away_are_where_the_plane_is() {

@@ -17,8 +17,8 @@ fn dots_keep_the_mean_light() {
     small.clear();
     small.insert((Transform::IDENTITY, Projection::default()));
     let wall = Transform::from_xyz(0.0, 0.0, -20.0);
-    let colour = Color::linear_rgb(0.55, 0.3, 0.12);
-    small.put(Rectangle::new(100.0, 100.0), unlit(colour), wall);
+    let color = Color::linear_rgb(0.55, 0.3, 0.12);
+    small.put(Rectangle::new(100.0, 100.0), unlit(color), wall);
     let plain = small.shot(&ComicStyle::new());
     let count = f64::from(SIZE.x * SIZE.y);
     let mut spreads = Vec::new();
@@ -61,7 +61,7 @@ fn ink(picture: &image::RgbaImage) -> f64 {
 }
 
 /// Truth: lines in focus are those without the effect; the farther they are from it, the less ink
-/// they have, down to none; and the colours stay.
+/// they have, down to none; and the colors stay.
 #[test]
 fn lines_fade_out_of_focus() {
     let mut small = Small::new(LINED, Msaa::Off);

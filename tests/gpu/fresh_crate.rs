@@ -121,7 +121,7 @@ impl Ink<'_> {
         ink.count() as f64 / self.plain.pixels().len() as f64
     }
 
-    /// How many pixels differ from their right neighbour by more than 25 degrees of hue, and the
+    /// How many pixels differ from their right neighbor by more than 25 degrees of hue, and the
     /// fraction of these that have ink within a pixel. Light and shadow keep the hue, so two
     /// objects meet there.
     fn borders(&self) -> (usize, f64) {
@@ -144,7 +144,7 @@ impl Ink<'_> {
     }
 }
 
-/// Degrees; `None` for greys.
+/// Degrees; `None` for grays.
 fn hue(color: &Rgb<u8>) -> Option<f32> {
     let [r, g, b] = color.0.map(f32::from);
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));

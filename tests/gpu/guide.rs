@@ -152,7 +152,7 @@ A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic
 `ComicStyle`. `version` is the version of the format and must be there. This page is about version 3; a file of
 version 2 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
 is an error that names line and column. Every other entry is optional: an effect that is left out is off (in a
-partial style: as the camera has it), a field that is left out has its default. Colours are `\"#rrggbb\"`,
+partial style: as the camera has it), a field that is left out has its default. Colors are `\"#rrggbb\"`,
 `\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
 
 Files may be untrusted. Reading a text, using its settings and writing it again allocates at most 1 MiB and 256

@@ -7,7 +7,7 @@ use bevy_comics_testkit::{
         halftone::{Plate, inked, plate_tones},
     },
     screens::{
-        CELL_SIZES, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean, moire,
+        CELL_SIZES, color_error, colors, gray_inks, ideal, in_phase, largest_jump, mean, moire,
         moire_of_inks, tone_error,
     },
 };
@@ -42,9 +42,9 @@ fn with_black(black_generation: f32) -> Halftone {
     }
 }
 
-/// 20 colours, at three fractions of black, are divided among ideal inks without a rest.
+/// 20 colors, at three fractions of black, are divided among ideal inks without a rest.
 #[test]
-fn ideal_inks_print_every_colour() {
+fn ideal_inks_print_every_color() {
     for s in [0.0, 0.5, 1.0].map(with_black) {
         for light in colors() {
             let separated = inked(&s, plate_tones(&s, light));
@@ -54,24 +54,24 @@ fn ideal_inks_print_every_colour() {
     }
 }
 
-/// 20 colours and three greys, with half of the black and with the plates of the effect. With real
+/// 20 colors and three grays, with half of the black and with the plates of the effect. With real
 /// inks, the mean light is that of independent screens (Demichel), which needs the phase of black:
 /// where three inks take away the same light, the screens of cyan, magenta and black would not be
 /// independent.
 #[test]
-fn flat_colours_have_their_light_and_need_the_phase_of_black() {
-    assert_colours_have_their_light(&[0.5], &[grey_inks]);
+fn flat_colors_have_their_light_and_need_the_phase_of_black() {
+    assert_colors_have_their_light(&[0.5], &[gray_inks]);
 }
 
 /// The same at three fractions of black, and with ideal inks, of which the mean light is the
-/// colour.
+/// color.
 #[test]
 #[ignore = "long: three fractions of black, in double precision"]
-fn flat_colours_have_their_light_at_every_fraction_of_black() {
-    assert_colours_have_their_light(&[0.0, 0.5, 1.0], &[grey_inks, |ideal| ideal]);
+fn flat_colors_have_their_light_at_every_fraction_of_black() {
+    assert_colors_have_their_light(&[0.0, 0.5, 1.0], &[gray_inks, |ideal| ideal]);
 }
 
-fn assert_colours_have_their_light(blacks: &[f32], inks: &[fn(Halftone) -> Halftone]) {
+fn assert_colors_have_their_light(blacks: &[f32], inks: &[fn(Halftone) -> Halftone]) {
     let mut without = 0.0;
     for black in blacks {
         for inked in inks {
@@ -79,7 +79,7 @@ fn assert_colours_have_their_light(blacks: &[f32], inks: &[fn(Halftone) -> Halft
             let off = color_error(&s, Plate::all(&s, 1.0));
             assert!(off < 0.01, "black {black}: {off}");
         }
-        let real = grey_inks(with_black(*black));
+        let real = gray_inks(with_black(*black));
         without = f64::max(without, color_error(&real, in_phase(&real)));
     }
     println!("without the phase of black: {without}");
@@ -135,7 +135,7 @@ fn assert_no_moire(screens: &[(f64, f64)]) {
     }
 }
 
-/// The same of a grey print with four inks, whose screens beat with each other.
+/// The same of a gray print with four inks, whose screens beat with each other.
 #[test]
 fn four_screens_do_not_beat() {
     for black_generation in [0.0, 0.5, 1.0] {
@@ -157,14 +157,14 @@ pub fn fill(small: &mut Small, color: Color) {
     camera.clear_color = color.into();
 }
 
-/// A camera that sees a colour alone.
+/// A camera that sees a color alone.
 fn flat() -> Small {
     let mut small = Small::new(UVec2::new(144, 144), Msaa::Off);
     small.clear();
     small
 }
 
-/// The mean light of a colour in linear light, without a style, and printed.
+/// The mean light of a color in linear light, without a style, and printed.
 fn mean_lights(small: &mut Small, [r, g, b]: [f32; 3], s: Halftone) -> [[f64; 3]; 2] {
     fill(small, Color::linear_rgb(r, g, b));
     [ComicStyle::new(), ComicStyle::new().with(s)].map(|style| {
@@ -221,7 +221,7 @@ fn assert_rendered_flats(cases: impl Iterator<Item = ((f32, f32), ScreenShape)>)
 }
 
 #[test]
-fn rendered_colours_have_their_light() {
+fn rendered_colors_have_their_light() {
     let mut small = flat();
     let lights = [
         [0.8, 0.3, 0.1],

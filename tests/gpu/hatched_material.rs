@@ -123,7 +123,7 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
 /// Every mode of a ramp gives the fraction of what the same ramp gives where all light arrives.
 #[test]
 fn strokes_follow_the_tones_of_ramps() {
-    let grey = |part| Color::linear_rgb(part, part, part);
+    let gray = |part| Color::linear_rgb(part, part, part);
     let mut small = room(SIZE, 0.0);
     for mode in MODES {
         small.clear();
@@ -131,8 +131,8 @@ fn strokes_follow_the_tones_of_ramps() {
         light_from(&mut small, Vec3::new(0.0, 0.75f32.sqrt(), 0.5), 0.8);
         let stops = [
             RampStop::new(0.0, Color::BLACK),
-            RampStop::new(0.3, grey(0.3)),
-            RampStop::new(0.7, grey(0.9)),
+            RampStop::new(0.3, gray(0.3)),
+            RampStop::new(0.7, gray(0.9)),
         ];
         let light = ToonLight {
             ramp: Some(Ramp {
@@ -341,9 +341,9 @@ fn no_strokes_change_nothing() {
     assert!(apart(&before, &after) > 50);
 }
 
-/// The colour between strokes keeps the mean of a shade.
+/// The color between strokes keeps the mean of a shade.
 #[test]
-fn shades_keep_their_mean_colour() {
+fn shades_keep_their_mean_color() {
     let mut small = room(SIZE, 0.2);
     light_from(&mut small, -Vec3::Z, 0.6);
     let light = ToonLight::default();

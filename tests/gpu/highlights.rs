@@ -48,13 +48,13 @@ const WHITE: [f64; 3] = [1.0; 3];
 const GREEN: [f64; 3] = [0.0, 1.0, 0.0];
 const RED: [f64; 3] = [1.0, 0.0, 0.0];
 
-/// The colours of pixels in a new picture.
+/// The colors of pixels in a new picture.
 fn colors<const N: usize>(small: &mut Small, at: [[u32; 2]; N]) -> [[f64; 3]; N] {
     let picture = small.settle().picture();
     at.map(|[x, y]| linear(&picture, x, y))
 }
 
-/// The colours at the middles of the four sides of the square: left, right, top at the left,
+/// The colors at the middles of the four sides of the square: left, right, top at the left,
 /// top at the right; and in its middle.
 fn sides(small: &mut Small) -> [[f64; 3]; 5] {
     colors(small, [[28, 47], [68, 47], [38, 28], [58, 28], [58, 47]])

@@ -95,7 +95,7 @@ fn touching_objects_of_like_depth_and_normal_have_an_edge() {
 }
 
 #[test]
-fn an_object_without_contours_has_none_and_its_neighbour_keeps_its_own() {
+fn an_object_without_contours_has_none_and_its_neighbor_keeps_its_own() {
     let (mut small, [left, right]) = two_cubes();
     let both = ink(&mut small, Outlines::default());
     small.on(left).insert(NoOutlines::default());
@@ -130,7 +130,7 @@ fn a_bare_object_in_front_hides_and_one_behind_is_outlined_over() {
 }
 
 #[test]
-fn an_object_has_its_own_colour_width_and_kinds() {
+fn an_object_has_its_own_color_width_and_kinds() {
     let (mut small, [left, _]) = two_cubes();
     let plain = ink(&mut small, silhouettes_alone());
     small.on(left).insert(OutlineStyle {
@@ -159,7 +159,7 @@ fn an_object_has_its_own_colour_width_and_kinds() {
     assert!(total(&some, 0..57) < 0.05);
 }
 
-/// An object's lines have the part of the ink that its opacity says; its neighbour's lines
+/// An object's lines have the part of the ink that its opacity says; its neighbor's lines
 /// keep theirs.
 #[test]
 fn an_object_has_its_own_opacity() {

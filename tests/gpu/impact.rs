@@ -34,11 +34,11 @@ fn counts(small: &Small) -> Option<ImpactCounts> {
     counts_of(small, small.camera)
 }
 
-/// Black and white, and no colours, unlike the scene.
+/// Black and white, and no colors, unlike the scene.
 fn is_two_tone(picture: &RgbaImage) -> bool {
-    let grey = |p: &image::Rgba<u8>| p.0[0] == p.0[1] && p.0[1] == p.0[2];
+    let gray = |p: &image::Rgba<u8>| p.0[0] == p.0[1] && p.0[1] == p.0[2];
     let extreme = picture.pixels().filter(|p| matches!(p.0[0], 0 | 255));
-    picture.pixels().all(grey) && extreme.count() * 2 > picture.pixels().len()
+    picture.pixels().all(gray) && extreme.count() * 2 > picture.pixels().len()
 }
 
 /// From the next frame on, two drawings of five frames each; then the picture is as before,
@@ -101,7 +101,7 @@ fn tones_alternate() {
     }
 }
 
-/// Lines in the colour of a tone are exchanged with it: they are as visible on the negative.
+/// Lines in the color of a tone are exchanged with it: they are as visible on the negative.
 #[test]
 fn lines_are_exchanged_with_the_tones() {
     let mut small = small();

@@ -109,7 +109,7 @@ fn expected(at: f32, offset: f32, texel: f32) -> f32 {
     let tie = 0.5 - (drawn - border).abs();
     assert!(
         tie > 0.015,
-        "the edge runs through centres of pixels: {tie}"
+        "the edge runs through centers of pixels: {tie}"
     );
     (border + offset) * texel
 }

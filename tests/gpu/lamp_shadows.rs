@@ -81,7 +81,7 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
             "{name}: {count} border pixels, {between} between, off by {off:.4}, mean {mean:.4}"
         );
         // Shadow maps are moved by their biases, towards the shadow. With the slope from
-        // neighbouring pixels, the sun's were off by 0.24, and 0.28 of them lay between.
+        // neighboring pixels, the sun's were off by 0.24, and 0.28 of them lay between.
         let (most, moved, least, part) = match light {
             Kind::Sun(_) => (0.21, 0.18, 130, 0.45),
             Kind::Lamp(_) => (0.16, 0.1, 150, 0.5),
@@ -151,7 +151,7 @@ fn change_lights(stage: &mut Stage, change: impl Fn(&mut f32, &mut bool)) {
 }
 
 /// Truth: light falls off with the square of the distance and ends at its range, smoothly or in
-/// rings, and has the colour of its lamp; the cone of a spot light ends in the middle between its
+/// rings, and has the color of its lamp; the cone of a spot light ends in the middle between its
 /// two angles. A ramp over the fraction of all light keeps the rings.
 #[test]
 fn light_of_lamps_falls_off_to_its_range() {
@@ -236,7 +236,7 @@ fn light_of_lamps_falls_off_to_its_range() {
                 if ids.pixels[i][0] != id {
                     continue;
                 }
-                // Where the light changes, the pixel lies between its neighbours.
+                // Where the light changes, the pixel lies between its neighbors.
                 let (u, v) = (x as f32, y as f32);
                 let places = [
                     (u, v),

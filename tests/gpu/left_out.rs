@@ -240,7 +240,7 @@ fn the_game_can_ask_for_the_range_alone() {
     assert_eq!(small.picture(), original);
     let range = small.range().and_then(VisibleDepthRange::distances);
     let (near, far) = range.expect("a range");
-    // The camera is 6.6 units from the centre of a ground of 9 by 9.
+    // The camera is 6.6 units from the center of a ground of 9 by 9.
     assert!(
         1.0 < near && near < 5.0 && 8.0 < far && far < 14.0,
         "{near} to {far}"

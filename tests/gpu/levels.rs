@@ -48,9 +48,9 @@ fn ink(small: &mut Small, distance: f32) -> (f32, usize) {
         .filter(|(.., pixel)| pixel.0[0] < 60);
     let (mut count, mut inside) = (0, 0);
     for (x, y, _) in dark {
-        let from_centre = (Vec2::new(x as f32, y as f32) + 0.5 - 0.5 * size).length();
+        let from_center = (Vec2::new(x as f32, y as f32) + 0.5 - 0.5 * size).length();
         count += 1;
-        inside += usize::from(from_centre < 0.8 * radius);
+        inside += usize::from(from_center < 0.8 * radius);
     }
     (count as f32 / radius, inside)
 }

@@ -117,12 +117,12 @@ impl Seen {
 /// The sides of pixels at which the lid ends, or something ends before it: pixel, and 0 for its
 /// east and 1 for its south.
 fn true_sides(seen: &Seen) -> HashSet<([i64; 2], usize)> {
-    let centre = |[x, y]: [i64; 2]| DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+    let center = |[x, y]: [i64; 2]| DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
     let [width, height] = SIZE.to_array().map(i64::from);
     let mut sides = HashSet::new();
     for pixel in (0..height - 1).flat_map(|y| (0..width - 1).map(move |x| [x, y])) {
         for (side, step) in [[1, 0], [0, 1]].into_iter().enumerate() {
-            let [from, to] = [pixel, [pixel[0] + step[0], pixel[1] + step[1]]].map(centre);
+            let [from, to] = [pixel, [pixel[0] + step[0], pixel[1] + step[1]]].map(center);
             let [(a, lid_a), (b, lid_b)] = [from, to].map(|place| seen.at(place));
             let may_jump = (lid_a || lid_b) && (a - b).abs() > JUMP * a.max(b);
             if may_jump && seen.jumps(from, to) {

@@ -118,7 +118,7 @@ pub fn viewport(at: UVec2, size: UVec2) -> Camera {
     }
 }
 
-/// Whether two colours are equal within a code of the picture.
+/// Whether two colors are equal within a code of the picture.
 pub fn alike(a: [f64; 3], b: [f64; 3]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.006)
 }

@@ -214,9 +214,9 @@ fn below_a_side(angle: f32, shift: f32) -> Transform {
 }
 
 /// Where only the straight part between two cracks reaches, a line has its object's
-/// colour too.
+/// color too.
 #[test]
-fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
+fn a_diagonal_line_has_its_objects_color_up_to_the_rim() {
     let mut small = towards_the_sky();
     for width in [1.0, 2.0, 5.0] {
         let wall = half_plane(&mut small, 0.7, 0.3);

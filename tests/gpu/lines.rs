@@ -76,7 +76,7 @@ fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
             let what = format!("{operator:?} from {name}");
             assert!(false_lines.is_empty(), "{what}: {false_lines:?}");
             let columns: HashSet<_> = inked.iter().map(|(x, _)| *x).collect();
-            // Pixels at the border of the picture lack a neighbour.
+            // Pixels at the border of the picture lack a neighbor.
             let count = columns.len();
             assert!(count >= 196, "{what}: skyline in {count} of 200 columns");
         }

@@ -36,7 +36,7 @@ fn objects(hysteresis: f32, budget: f32) -> ComicStyle {
 /// A pass continues lines by eight cracks. Where there is nothing to continue, it loads no
 /// window.
 #[test]
-#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighbourhood_and_each_crack_once` has one"]
+#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighborhood_and_each_crack_once` has one"]
 fn cells_without_weak_cracks_load_no_window() {
     let work = link_work::count(&objects(20.0, 1.0));
     assert!(work.cells > 20, "{work:?}");
@@ -49,7 +49,7 @@ fn cells_without_weak_cracks_load_no_window() {
 /// Without hysteresis there are no passes that link. With a budget, the cracks of every pixel
 /// that has any are loaded, to be weighed: of one pixel at least, and of all at most.
 #[test]
-fn a_budget_loads_its_neighbourhood_and_each_crack_once() {
+fn a_budget_loads_its_neighborhood_and_each_crack_once() {
     let work = link_work::count(&objects(0.0, 0.35));
     assert_eq!(work.dispatches, 1, "{work:?}");
     assert_eq!(work.link, 0.0, "{work:?}");
@@ -59,7 +59,7 @@ fn a_budget_loads_its_neighbourhood_and_each_crack_once() {
 
 /// Default lines: one pass links, and loads windows in some cells, but not in all.
 #[test]
-#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighbourhood_and_each_crack_once` has one"]
+#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighborhood_and_each_crack_once` has one"]
 fn default_lines_load_some_windows() {
     let work = link_work::count(&ComicStyle::new().with(Outlines::default()));
     assert_eq!(work.dispatches, 1 + 1, "{work:?}");

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{halftone::fill, prelude::*};
 
-/// Shows the means: their colours, or luminance, variance and coverage.
+/// Shows the means: their colors, or luminance, variance and coverage.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default)]
 struct ShownMeans {

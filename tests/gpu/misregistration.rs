@@ -117,7 +117,7 @@ fn cells_read_the_moved_picture() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The colours beside lines are moved, the lines are not.
+/// The colors beside lines are moved, the lines are not.
 #[test]
 fn lines_stay_in_place() {
     let s = Misregistration {

@@ -14,7 +14,7 @@ const HALF: Vec3 = Vec3::new(0.4, 0.3, 0.2);
 /// Units per second.
 const SPEED: f32 = 12.0;
 
-/// A grey box in front of white, seen along -z at a tenth of a unit per pixel.
+/// A gray box in front of white, seen along -z at a tenth of a unit per pixel.
 struct Stage {
     small: Small,
     mesh: Entity,
@@ -33,9 +33,9 @@ impl Stage {
         let mut small = Small::new(SIZE, Msaa::Off);
         small.empty_view(Msaa::Off, Color::WHITE);
         small.insert(Transform::from_xyz(0.0, 0.0, 0.05 * SIZE.y as f32));
-        let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
+        let gray = unlit(Color::srgb(0.5, 0.5, 0.5));
         let start = Transform::from_xyz(-5.0, 0.0, 0.0);
-        let mesh = small.put(Cuboid::from_size(2.0 * HALF), grey, start);
+        let mesh = small.put(Cuboid::from_size(2.0 * HALF), gray, start);
         small.on(mesh).insert(lines);
         small.headless.step(3);
         Self { small, mesh }
@@ -100,7 +100,7 @@ impl Stage {
         ribbons.iter(world).count()
     }
 
-    /// Pixels that are darker than the grey of the box.
+    /// Pixels that are darker than the gray of the box.
     fn ink(&mut self) -> Vec<UVec2> {
         let picture = self.small.picture();
         let dark = picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 100);

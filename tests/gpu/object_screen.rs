@@ -26,7 +26,7 @@ fn printed(small: &mut Small, anchor: ScreenAnchor) -> image::RgbaImage {
     small.shot(&ComicStyle::new().with(Halftone { anchor, ..spot() }))
 }
 
-/// A grey board of 80 by 60 pixels in front of a view in which a unit is a pixel.
+/// A gray board of 80 by 60 pixels in front of a view in which a unit is a pixel.
 fn board() -> (Small, Entity) {
     let mut small = Small::with(options(SIZE), Msaa::Off);
     small.clear();
@@ -37,8 +37,8 @@ fn board() -> (Small, Entity) {
         }),
         Transform::from_xyz(0.0, 0.0, 50.0),
     ));
-    let grey = unlit(Color::linear_rgb(0.6, 0.6, 0.6));
-    let board = small.put(Rectangle::new(80.0, 60.0), grey, Transform::IDENTITY);
+    let gray = unlit(Color::linear_rgb(0.6, 0.6, 0.6));
+    let board = small.put(Rectangle::new(80.0, 60.0), gray, Transform::IDENTITY);
     (small, board)
 }
 
@@ -48,8 +48,8 @@ fn followed(at: Transform) -> Similarity {
     let to_clip = DMat4::from_scale(DVec3::new(2.0 / width, 2.0 / height, 0.001));
     let size = f64::from(at.scale.x);
     let rotation = DQuat::from_array(at.rotation.to_array().map(f64::from));
-    let centre = at.translation.as_dvec3();
-    similarity_of(to_clip, [0.0, 0.0, width, height], centre, size, rotation).expect("in front")
+    let center = at.translation.as_dvec3();
+    similarity_of(to_clip, [0.0, 0.0, width, height], center, size, rotation).expect("in front")
 }
 
 /// Pixels that the board covers wherever it is in these tests, more than a cell from its edge.
@@ -196,7 +196,7 @@ fn assert_tones_of_sizes(sizes: &[f64], tones: &[f64]) {
 }
 
 /// An object that comes nearer by 1/512 of an octave a frame, over two octaves: its dots grow, and
-/// nothing jumps. At 40 pixels from the centre, a dot moves by 0.054 pixels, and an edge is one
+/// nothing jumps. At 40 pixels from the center, a dot moves by 0.054 pixels, and an edge is one
 /// pixel wide; what fades changes by 1/120 a frame.
 #[test]
 fn octaves_follow_each_other_without_a_jump() {

@@ -241,7 +241,7 @@ fn alone(name: &str, api: wgpu::Backends) {
     assert!(text.contains("1 passed"), "no test has run: {text}");
 }
 
-/// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colours at once,
+/// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colors at once,
 /// than it promises.
 fn check_webgl2(api: wgpu::Backends) {
     let limits = wgpu::Limits::downlevel_webgl2_defaults();

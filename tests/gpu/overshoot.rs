@@ -70,8 +70,8 @@ impl ClosingStep {
     }
 }
 
-/// Sum of ink, and its centre, in pixels from the middle of the picture, y up.
-fn sum_and_centre(ink: &[f32]) -> (f32, Vec2) {
+/// Sum of ink, and its center, in pixels from the middle of the picture, y up.
+fn sum_and_center(ink: &[f32]) -> (f32, Vec2) {
     let mut sum = 0.0;
     let mut moment = Vec2::ZERO;
     for (i, ink) in ink.iter().enumerate() {
@@ -100,22 +100,22 @@ fn lines_go_on_by_their_overshoot_in_every_direction() {
             for ((degrees, short), long) in DEGREES.iter().zip(&short).zip(&long) {
                 let along = Vec2::from_angle(degrees.to_radians());
                 let gained: Vec<f32> = long.iter().zip(short).map(|(a, b)| a - b).collect();
-                let (sum, centre) = sum_and_centre(&gained);
-                let what = format!("{degrees} degrees, {width} px, {overshoot}: {sum}, {centre}");
+                let (sum, center) = sum_and_center(&gained);
+                let what = format!("{degrees} degrees, {width} px, {overshoot}: {sum}, {center}");
                 assert!(gained.iter().all(|ink| *ink > -0.02), "{what}: lost");
                 assert!((sum / width - overshoot).abs() < 0.5, "{what}");
                 // The end of a line lies on a crack, at most half a diagonal of a pixel aside,
                 // and its direction is within 5 degrees.
                 let most = 0.5f32.sqrt() + 0.5 * overshoot * 5f32.to_radians().tan();
-                assert!(along.perp_dot(centre).abs() < most, "{what}");
-                assert!(along.dot(centre) > 15.0, "{what}");
+                assert!(along.perp_dot(center).abs() < most, "{what}");
+                assert!(along.dot(center) > 15.0, "{what}");
             }
         }
     }
 }
 
 /// The blunt end of a line is round: beyond the middle of its last crack, it has the area of half
-/// of a disc. The ramp of a pixel adds pi / 24 to it, and a disc that is sampled at the centres of
+/// of a disc. The ramp of a pixel adds pi / 24 to it, and a disc that is sampled at the centers of
 /// pixels is up to 0.15 pixels smaller or larger at these widths.
 #[test]
 fn blunt_ends_are_round() {

@@ -68,7 +68,7 @@ pub fn run() {
     let (before, after) = (original.get_pixel(48, 32), tinted.get_pixel(48, 32));
     assert!(after[2] + 20 < before[2], "from {before:?} to {after:?}");
 
-    // Its variant reads the depth map: the cube keeps its colour, the sky does not.
+    // Its variant reads the depth map: the cube keeps its color, the sky does not.
     let far_only = Tint { far_only: true, ..default() };
     let (far, ran) = picture(&mut headless, camera, far_only);
     assert!(ran, "the variant did not run");

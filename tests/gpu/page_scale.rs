@@ -113,7 +113,7 @@ impl Looks {
     }
 }
 
-/// A wall of one colour.
+/// A wall of one color.
 fn flat(screen: UVec2) -> Small {
     let mut small = towards_the_sky(screen);
     let color = Color::linear_rgb(0.55, 0.4, 0.25);
@@ -122,7 +122,7 @@ fn flat(screen: UVec2) -> Small {
     small
 }
 
-/// Areas of three colours, with a noise of pixels of the screen.
+/// Areas of three colors, with a noise of pixels of the screen.
 fn photograph() -> Image {
     let pixel = |i: u32| {
         let [x, y] = [i % SCREEN.x, i / SCREEN.x];

@@ -102,7 +102,7 @@ fn a_transparent_background_stays() {
 
 /// A code of rounding: the picture between the passes has 11 bits.
 #[test]
-fn one_colour_stays() {
+fn one_color_stays() {
     let mut small = towards_the_sky(UVec2::new(40, 30));
     for color in [
         Color::WHITE,
@@ -126,14 +126,14 @@ fn one_colour_stays() {
     }
 }
 
-/// Truth: an edge between two colours stays where it is, and as sharp as it is.
+/// Truth: an edge between two colors stays where it is, and as sharp as it is.
 #[test]
 fn an_edge_stays_sharp() {
     let mut small = towards_the_sky(UVec2::new(48, 40));
     wall(&mut small, [0.0, -40.0], [40.0, 40.0], 20.0);
-    let grey = Color::srgb(0.3, 0.3, 0.3);
+    let gray = Color::srgb(0.3, 0.3, 0.3);
     let at = Transform::from_xyz(0.0, 0.0, -30.0);
-    small.put(Rectangle::new(90.0, 90.0), unlit(grey), at);
+    small.put(Rectangle::new(90.0, 90.0), unlit(gray), at);
     let plain = small.shot(&ComicStyle::new());
     let painted = small.shot(&ComicStyle::new().with(paint(PaintKernel::Box)));
     for (a, b) in plain.as_raw().iter().zip(painted.as_raw()) {
@@ -145,14 +145,14 @@ fn an_edge_stays_sharp() {
         let ink = |picture: &image::RgbaImage| -> f64 {
             (12..36).map(|x| linear(picture, x, y)[1]).sum()
         };
-        // One pixel of white more is 1 less the grey.
+        // One pixel of white more is 1 less the gray.
         let contrast = 1.0 - linear(&plain, 2, y)[1];
         let moved = (ink(&painted) - ink(&plain)) / contrast;
         assert!(moved.abs() < 0.1, "row {y}: {moved}");
     }
 }
 
-/// Two objects of nearly one colour: paint that keeps figures blurs less of their border.
+/// Two objects of nearly one color: paint that keeps figures blurs less of their border.
 #[test]
 fn figures_keep_their_outline() {
     let mut small = towards_the_sky(UVec2::new(40, 30));

@@ -359,7 +359,7 @@ fn compare_views(window: &impl Session) {
     let map = picture(window);
     assert!(
         map.pixels().all(|p| p[0] == p[1] && p[1] == p[2]),
-        "the map is grey"
+        "the map is gray"
     );
     window.until("the histogram", |state| {
         state["widgets"]["histogram"].is_array()

@@ -10,7 +10,7 @@ use crate::{
     walls::{towards_the_sky, wall},
 };
 
-/// A wall of one colour that fills the picture.
+/// A wall of one color that fills the picture.
 fn flat(size: UVec2, light: f32) -> Small {
     let mut small = towards_the_sky(size);
     wall(&mut small, [-600.0, -600.0], [600.0, 600.0], 100.0);
@@ -18,7 +18,7 @@ fn flat(size: UVec2, light: f32) -> Small {
     small
 }
 
-/// Gives the wall another grey.
+/// Gives the wall another gray.
 fn paint(small: &mut Small, light: f32) {
     let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
     for (_, material) in materials.iter_mut() {

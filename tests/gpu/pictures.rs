@@ -165,7 +165,7 @@ pub fn assert_pass_matches_the_reference(
     let outlines = style.get::<Outlines>().copied().or(implied);
     let world = small.headless.app.world();
     let seconds = world.resource::<Time>().elapsed_secs_f64();
-    // This camera stores display codes instead of linear colour.
+    // This camera stores display codes instead of linear color.
     let encoded = world.get::<CompositingSpace>(small.camera) == Some(&CompositingSpace::Srgb);
     let drawn = outlines.unwrap_or_default();
     let resolved = Resolved::new(&prepass, |near| jump(&drawn) * view.jump_reference(near));
@@ -301,7 +301,7 @@ fn apart(a: Rgba, b: Rgba) -> f64 {
 }
 
 /// A style without what the reference of the whole picture does not know and other tests check:
-/// paint, hatching, iso-lines, lines in the colours of surfaces, convex and concave creases of their own,
+/// paint, hatching, iso-lines, lines in the colors of surfaces, convex and concave creases of their own,
 /// and of layers the borders that are found, whole objects and lines.
 fn known_to_reference(style: ComicStyle) -> ComicStyle {
     let mut style = style
@@ -334,7 +334,7 @@ fn known_to_reference(style: ComicStyle) -> ComicStyle {
 
 /// A preset as the reference of the whole picture knows it. One with layers and tints is compared
 /// twice, without the ones and without the others: steps of tints are ten times as steep as tones,
-/// and turn the rounding of the layers' colours into another tint.
+/// and turn the rounding of the layers' colors into another tint.
 pub fn known_forms(preset: &Preset) -> Vec<ComicStyle> {
     let style = known_to_reference(preset.style().sanitized());
     let mut untinted = style.clone();
@@ -366,7 +366,7 @@ pub fn check_presets(small: &mut Small, presets: &[Preset]) {
     }
 }
 
-/// Colours, contours, bands and a sketch; with four samples, outlines, dots, planes and a vignette.
+/// Colors, contours, bands and a sketch; with four samples, outlines, dots, planes and a vignette.
 #[test]
 fn presets_match_the_reference() {
     let one = [presets::CRIMSON_DUSK, presets::NOIR, presets::FIGURE_8B];
@@ -593,7 +593,7 @@ fn tone_bands_match_the_reference() {
     }
 }
 
-/// After the other effects of colour, over a background that shows through.
+/// After the other effects of color, over a background that shows through.
 #[test]
 fn every_mode_of_harmony_matches_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);

@@ -66,7 +66,7 @@ fn is_ink(picture: &RgbaImage, x: u32, y: u32) -> bool {
     *picture.get_pixel(x, y) == INK
 }
 
-/// Truth: the picture has the flat colours and one more, that of ink. No ink is lighter, and no
+/// Truth: the picture has the flat colors and one more, that of ink. No ink is lighter, and no
 /// other pixel is changed.
 #[test]
 fn pixels_are_ink_or_as_they_were() {

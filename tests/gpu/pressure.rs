@@ -315,7 +315,7 @@ fn put_ramp(small: &mut Small, alphas: [f32; 2]) -> Entity {
     put_plate(small, &[Piece { ends, alphas }])
 }
 
-/// Between vertices, the width changes in proportion. An object without vertex colours keeps its
+/// Between vertices, the width changes in proportion. An object without vertex colors keeps its
 /// width. The component of a parent applies to its children, if it says so.
 #[test]
 fn widths_of_vertices_run_into_each_other_and_are_inherited() {

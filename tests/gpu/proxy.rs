@@ -91,7 +91,7 @@ fn turned() -> Quat {
 }
 
 /// The normal of a ball through the place of a cube that a pixel of 160 by 160 shows, if it does,
-/// and its change over a pixel on the same face, as found from a neighbour (1: right, down; -1:
+/// and its change over a pixel on the same face, as found from a neighbor (1: right, down; -1:
 /// left, up).
 fn ball_on_cube(x: u32, y: u32, beside: [f64; 2]) -> Option<Surface> {
     let rotation = turned().as_dquat();
@@ -146,7 +146,7 @@ fn a_cube_as_a_ball_has_its_tones() {
     };
     let mut seen = 0;
     for (x, y) in (0..160).flat_map(|x| (0..160).map(move |y| (x, y))) {
-        // Derivatives are found from either neighbour.
+        // Derivatives are found from either neighbor.
         let sides = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
         let tones = sides.map(|side| {
             let s = ball_on_cube(x, y, side)?;
@@ -158,8 +158,8 @@ fn a_cube_as_a_ball_has_its_tones() {
         seen += 1;
         let (low, high) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
         let found = linear(&picture, x, y)[0];
-        // The row of the derivative may be the neighbour's too, which changes it as much as the
-        // choice of the neighbour does. Half a code near white is 0.0046 in linear light.
+        // The row of the derivative may be the neighbor's too, which changes it as much as the
+        // choice of the neighbor does. Half a code near white is 0.0046 in linear light.
         let slack = 0.0046 + high - low;
         assert!(
             (low - slack..=high + slack).contains(&found),

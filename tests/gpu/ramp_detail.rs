@@ -25,7 +25,7 @@ pub fn two_tones(axis: DetailAxis, mode: RampMode) -> ToonLight {
     })
 }
 
-/// Largest difference of a pixel from the colour at a detail, in codes of linear light.
+/// Largest difference of a pixel from the color at a detail, in codes of linear light.
 pub fn off(picture: &RgbaImage, x: u32, y: u32, amount: f64) -> f64 {
     let light = two_tones(DetailAxis::Constant(1.0), RampMode::PerLight);
     let tones = Tones::new(&light.ramp.expect("a ramp"), amount);

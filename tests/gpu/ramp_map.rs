@@ -45,7 +45,7 @@ fn add(small: &mut Small, image: Image) -> RampMap {
     images.add(image).into()
 }
 
-/// The tones of rows, as colours of surfaces, or as factors of the light.
+/// The tones of rows, as colors of surfaces, or as factors of the light.
 fn light_of(small: &mut Small, mode: RampMode, blend: RampBlend, rows: &[Vec<Rgb>]) -> ToonLight {
     ToonLight {
         ramp_map: add(small, painted(rows)),
@@ -331,13 +331,13 @@ fn bad_images_leave_the_stops() {
     assert!(apart(&wanted, &drawn(&mut small)) > 100);
 }
 
-/// An image of 16 tones of one grey, in 8 bits.
-fn greys(code: u8) -> RgbaImage {
+/// An image of 16 tones of one gray, in 8 bits.
+fn grays(code: u8) -> RgbaImage {
     RgbaImage::from_pixel(16, 1, image::Rgba([code, code, code, 255]))
 }
 
 /// Tones follow when code changes an image. One that cannot be used leaves the stops, of which the
-/// last one is white; images in sRGB and in linear light give the colours that they mean.
+/// last one is white; images in sRGB and in linear light give the colors that they mean.
 #[test]
 fn tones_follow_their_image() {
     let mut small = room(UVec2::splat(16), 0.0);
@@ -378,7 +378,7 @@ fn tones_follow_their_image() {
 fn shadings_name_their_images_by_path() {
     let folder = Folder::new("ramp-map");
     let file = folder.0.join("tones.png");
-    greys(100).save(&file).expect("written");
+    grays(100).save(&file).expect("written");
     let text = "(version: 2, light: (highlight: 0.0, ramp_map: \"tones.png\",
         ramp: (mode: PerLight, blend: Absolute)))";
     std::fs::write(folder.0.join("hero.toon.ron"), text).expect("written");
@@ -411,12 +411,12 @@ fn shadings_name_their_images_by_path() {
     ));
     sun(&mut small, Vec3::Z, bright(1.0));
     small.world().insert_resource(GlobalAmbientLight::NONE);
-    let grey = |small: &mut Small| drawn(small).get_pixel(48, 32).0[0];
-    assert!(grey(&mut small).abs_diff(100) <= 1);
-    greys(200).save(&file).expect("written");
+    let gray = |small: &mut Small| drawn(small).get_pixel(48, 32).0[0];
+    assert!(gray(&mut small).abs_diff(100) <= 1);
+    grays(200).save(&file).expect("written");
     let changed = (0..100).any(|_| {
         std::thread::sleep(Duration::from_millis(25));
-        grey(&mut small).abs_diff(200) <= 1
+        gray(&mut small).abs_diff(200) <= 1
     });
     assert!(changed, "the change did not arrive");
     // Without the component the material stays; the shading is written with the path.

@@ -230,7 +230,7 @@ fn cameras_choose_what_creases_are_found_by() {
 /// Chunks of a floor in a group have no line between them, but folds have.
 #[test]
 fn groups_have_no_borders_where_the_surface_goes_on() {
-    // In a new app, the two have neighbouring numbers: those of entities, modulo 63.
+    // In a new app, the two have neighboring numbers: those of entities, modulo 63.
     let mut small = Small::alone(options(SIZE), Msaa::Off);
     let mut lines = |folded: f32, grouped: bool| {
         let small = &mut small;
@@ -321,7 +321,7 @@ fn assert_divided_as_reference(small: &mut Small, objects: &[Entity]) {
 }
 
 const FACADE: UVec2 = UVec2::new(384, 256);
-/// Half of the size of a frame in a wall, in metres.
+/// Half of the size of a frame in a wall, in meters.
 const FRAME: Vec2 = Vec2::new(0.6, 0.8);
 
 /// Thin creases in normals and at the edges of all meshes.

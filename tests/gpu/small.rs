@@ -300,7 +300,7 @@ impl Small {
     }
 }
 
-/// A material that has its colour whatever the light.
+/// A material that has its color whatever the light.
 pub fn unlit(color: Color) -> StandardMaterial {
     StandardMaterial {
         base_color: color,

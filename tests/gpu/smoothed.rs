@@ -14,11 +14,11 @@ const SIZE: UVec2 = UVec2::new(128, 128);
 
 /// Three tones for each light; the normals of a number of rounds, or the mesh's own.
 fn light(rounds: Option<u32>) -> ToonLight {
-    let grey = |part| Color::linear_rgb(part, part, part);
+    let gray = |part| Color::linear_rgb(part, part, part);
     let stops = [
-        RampStop::new(0.0, grey(0.0)),
-        RampStop::new(0.3, grey(0.4)),
-        RampStop::new(0.7, grey(1.0)),
+        RampStop::new(0.0, gray(0.0)),
+        RampStop::new(0.3, gray(0.4)),
+        RampStop::new(0.7, gray(1.0)),
     ];
     ToonLight {
         proxy: rounds.map(|rounds| ShadingProxy {

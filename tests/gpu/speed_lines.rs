@@ -53,12 +53,12 @@ fn still(kind: SpeedLineKind) -> SpeedLines {
     }
 }
 
-fn drawing(settings: SpeedLines, size: UVec2, centre: [f64; 2]) -> Drawing {
+fn drawing(settings: SpeedLines, size: UVec2, center: [f64; 2]) -> Drawing {
     Drawing {
         settings,
         size: [size.x, size.y].map(f64::from),
         scale: 1.0,
-        centre,
+        center,
         number: 0,
     }
 }
@@ -138,8 +138,8 @@ fn assert_lines_of_every_kind(step: usize) {
         };
         for lines in [dry, wide, narrow] {
             small.insert(lines).settle();
-            let centre = (lines.center * SIZE.as_vec2()).to_array().map(f64::from);
-            let apart = apart_at(&small.picture(), &drawing(lines, SIZE, centre), step);
+            let center = (lines.center * SIZE.as_vec2()).to_array().map(f64::from);
+            let apart = apart_at(&small.picture(), &drawing(lines, SIZE, center), step);
             // Places are rounded to 1e-4 pixels, a few times over. Streaks of a dry brush are five
             // times as steep as the edges of lines.
             let streaks = if lines.dry_brush > 0.0 { 1e-2 } else { 0.0 };

@@ -67,7 +67,7 @@ fn square(small: &mut Small, y: f32, more: impl Bundle) -> Entity {
     small.on(square).insert(more).id()
 }
 
-/// Centre of the white pixels of the rows, pixels from the left.
+/// Center of the white pixels of the rows, pixels from the left.
 fn place(picture: &RgbaImage, rows: Range<u32>) -> f64 {
     let white = (picture.enumerate_pixels())
         .filter(|(_, y, p)| rows.contains(y) && p.0[..3] == [255; 3])

@@ -47,7 +47,7 @@ fn set_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     }
 }
 
-/// Files have colours in sRGB, and some defaults are not.
+/// Files have colors in sRGB, and some defaults are not.
 fn into_srgb(value: &mut dyn PartialReflect) {
     if let Some(color) = value.try_downcast_mut::<Color>() {
         *color = Color::Srgba(color.to_srgba());

@@ -103,7 +103,7 @@ fn summed(covers: &[f64]) -> (f64, DVec2) {
     (area, moment / area.max(1e-9))
 }
 
-/// The centre of a pixel, from the middle of the picture; up is positive.
+/// The center of a pixel, from the middle of the picture; up is positive.
 fn place([x, y]: [u32; 2], size: u32) -> DVec2 {
     let middle = 0.5 * f64::from(size);
     DVec2::new(f64::from(x) + 0.5 - middle, middle - f64::from(y) - 0.5)
@@ -152,14 +152,14 @@ fn check_cover(signs: &[StylizedHighlight]) {
         set_light(&mut small, &signed(sign));
         let found = covers(&drawn(&mut small));
         let wanted = true_covers(&sign, DVec3::Z, SIGN);
-        let ((area, middle), (true_area, centre)) = (summed(&found), summed(&wanted));
+        let ((area, middle), (true_area, center)) = (summed(&found), summed(&wanted));
         assert!(true_area > 300.0, "{sign:?}: {true_area} pixels");
         assert!(
             (area / true_area - 1.0).abs() < 0.01,
             "{sign:?}: {area} pixels, not {true_area}"
         );
-        let away = middle.distance(centre);
-        assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
+        let away = middle.distance(center);
+        assert!(away < 0.5, "{sign:?}: {middle}, not {center}");
         // The 16 parts of a pixel tell its cover to an eighth, and a slanted edge is off by 0.05.
         // Only where edges meet in a pixel is it off by more.
         let pairs = found.iter().zip(&wanted);

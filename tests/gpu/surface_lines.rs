@@ -1,4 +1,4 @@
-//! Lines in the colour of the surfaces that they belong to.
+//! Lines in the color of the surfaces that they belong to.
 
 use image::RgbaImage;
 
@@ -33,10 +33,10 @@ fn assert_alike(picture: &RgbaImage, x: u32, y: u32, want: [f64; 3]) {
     assert!(alike(color, want), "{x}, {y}: {color:?}, {want:?}");
 }
 
-/// All pixels of a line have the darker colour of the square, also those in front of the
+/// All pixels of a line have the darker color of the square, also those in front of the
 /// sky, and also where the rim of the square is mixed with the sky.
 #[test]
-fn lines_have_the_colour_of_their_surface() {
+fn lines_have_the_color_of_their_surface() {
     let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         spawn(&mut small, msaa);
@@ -58,17 +58,17 @@ fn lines_have_the_colour_of_their_surface() {
     }
 }
 
-/// The colour is that after the effects that change colours, and of objects that these leave
+/// The color is that after the effects that change colors, and of objects that these leave
 /// alone, that before them.
 #[test]
-fn the_colour_is_that_of_the_styled_surface() {
+fn the_color_is_that_of_the_styled_surface() {
     let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
     let square = spawn(&mut small, Msaa::Off);
-    let grey = Desaturation {
+    let gray = Desaturation {
         amount: 1.0,
         ..default()
     };
-    let style = ComicStyle::default().with(lines(6.0, 0.5)).with(grey);
+    let style = ComicStyle::default().with(lines(6.0, 0.5)).with(gray);
     let picture = small.shot(&style);
     let inside = linear(&picture, 40, 40);
     for x in 18..22 {
@@ -82,10 +82,10 @@ fn the_colour_is_that_of_the_styled_surface() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Of a slanted square, no line has the colour of the sky, at any width: lines that run straight
+/// Of a slanted square, no line has the color of the sky, at any width: lines that run straight
 /// through the steps of pixels lie away from the pixels that own them.
 #[test]
-fn slanted_lines_have_the_colour_of_their_surface() {
+fn slanted_lines_have_the_color_of_their_surface() {
     let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let square = spawn(&mut small, msaa);

@@ -157,7 +157,7 @@ fn assert_edges_of_a_gradient(lights: &[(ToonLight, f64)]) {
         let edge = crossing(*begins, 0.0);
         set(&mut small, &light, plain);
         check_edge(&mut small, entity, 160.0 * edge, &what);
-        // The map is read by the coordinates of the base colour.
+        // The map is read by the coordinates of the base color.
         set(&mut small, &light, turned);
         let moved = (edge - 0.25) / 0.5;
         check_edge(&mut small, entity, 160.0 * moved, &format!("{what}, moved"));

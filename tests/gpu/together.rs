@@ -195,8 +195,8 @@ fn put_things(small: &mut Small) -> Things {
     }
     let cubes = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| {
         let at = Transform::from_xyz(0.55 * k as f32 - 2.2, 0.3, -1.6);
-        let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
-        small.put(Cuboid::from_length(0.4), grey, at)
+        let gray = unlit(Color::srgb(0.5, 0.5, 0.5));
+        small.put(Cuboid::from_length(0.4), gray, at)
     });
     Things { boxes, pane, cubes }
 }
@@ -250,7 +250,7 @@ fn assert_same(before: &[RgbaImage], now: &[RgbaImage], most: f64, what: &str) {
 }
 
 /// Instances, blended meshes with `DepthWrite` and skinned meshes have the picture of plain meshes
-/// that have their shape and colour.
+/// that have their shape and color.
 #[test]
 fn meshes_of_every_kind_are_drawn_as_plain_ones() {
     assert_drawn_as_plain(&[ALL], 1);

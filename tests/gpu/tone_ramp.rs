@@ -4,7 +4,7 @@ use bevy_comics_testkit::{reference::tone_ramp, studio::set_style};
 
 use crate::{pictures::check, prelude::*, ramp::room};
 
-fn grey_wall(small: &mut Small, light: f32) -> Entity {
+fn gray_wall(small: &mut Small, light: f32) -> Entity {
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
     let material = unlit(Color::linear_rgb(light, light, light));
     small.put(wall, material, Transform::IDENTITY)
@@ -26,7 +26,7 @@ fn tones_change_with_the_distance() {
     small.style(&ComicStyle::new().with(ramp));
     small.insert(map);
     let gray = 0.2;
-    let wall = grey_wall(&mut small, gray);
+    let wall = gray_wall(&mut small, gray);
     let mut all = vec![];
     for z in [1.0f32, 3.0, 5.0, 7.0, 9.0] {
         let at = Transform::from_xyz(0.0, 0.0, -z);
@@ -75,7 +75,7 @@ fn pictures_in_tones_match_the_reference() {
         ("some of the tones", style(partial)),
         ("tones, turned round", with_map(default, flipped)),
         (
-            "tones, then bands and greys",
+            "tones, then bands and grays",
             bands.with(Desaturation::default()),
         ),
     ];
@@ -103,7 +103,7 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     // After this tonemapping, the square of the place.
     let at = ramp.middle_at * ramp.middle_at;
     let gray = at / (1.0 - at);
-    grey_wall(small, gray);
+    gray_wall(small, gray);
     small.headless.step(6);
     let picture = small.picture();
     assert_eq!(small.errors(), 0);

@@ -64,7 +64,7 @@ fn stage_in(mut small: Small, light: &Kind) -> Stage {
     let white = material(
         &mut small,
         ToonLight {
-            // No rings in the light, so that every lit pixel has one colour.
+            // No rings in the light, so that every lit pixel has one color.
             falloff: 0.0,
             ..default()
         },
@@ -303,7 +303,7 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
             dark += usize::from(!bright);
         }
         assert!(lit > 1000 && dark > 500, "{lit} {dark}");
-        // The centre of a pixel at the rim may lie off the sphere.
+        // The center of a pixel at the rim may lie off the sphere.
         assert!(wrong * 1000 <= lit + dark, "{wrong} of {}", lit + dark);
     }
 }

@@ -28,7 +28,7 @@ fn dark_of(size: UVec2) -> Small {
     small
 }
 
-/// An image of one colour per texel, in linear light.
+/// An image of one color per texel, in linear light.
 fn image(small: &mut Small, size: [u32; 3], colors: &[Vec3]) -> Handle<Image> {
     let [width, height, depth_or_array_layers] = size;
     let size = Extent3d {
@@ -63,8 +63,8 @@ fn image(small: &mut Small, size: [u32; 3], colors: &[Vec3]) -> Handle<Image> {
     small.world().resource_mut::<Assets<Image>>().add(image)
 }
 
-/// An environment of six colours, in the order +X, -X, +Y, -Y and towards -Z, +Z. A
-/// colour of 1 is white in the picture.
+/// An environment of six colors, in the order +X, -X, +Y, -Y and towards -Z, +Z. A
+/// color of 1 is white in the picture.
 fn environment(small: &mut Small, colors: [Vec3; 6]) -> EnvironmentMapLight {
     let map = image(small, [1, 1, 6], &colors);
     EnvironmentMapLight {
@@ -303,7 +303,7 @@ fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
     };
     let [quad, colored] = [quad(3.0), with_colors(quad(3.0))];
     let cases = [
-        ("vertex colours", &colored, plain(color)),
+        ("vertex colors", &colored, plain(color)),
         ("normal map", &quad, bumpy),
         ("alpha mask", &colored, blended(AlphaMode::Mask(0.25))),
         ("blend", &quad, blended(AlphaMode::Blend)),

@@ -32,7 +32,7 @@ fn pass(small: &mut Small, style: &ComicStyle) -> Vec<([f32; 4], [f32; 4])> {
     read.pixels.into_iter().zip(wrote.pixels).collect()
 }
 
-/// Ink is opaque: of a line over the empty background the colour is the ink's, times its
+/// Ink is opaque: of a line over the empty background the color is the ink's, times its
 /// coverage, and the opacity is the coverage.
 #[test]
 fn ink_over_an_empty_background_is_as_opaque_as_its_coverage() {
@@ -95,7 +95,7 @@ fn paper_is_opaque_and_blank_where_nothing_is() {
     }
 }
 
-/// Effects that add colour add none where nothing is.
+/// Effects that add color add none where nothing is.
 #[test]
 fn an_empty_background_stays_empty() {
     let color = Color::linear_rgb(0.2, 0.1, 0.6);

@@ -1,4 +1,4 @@
-//! Transparent meshes with `DepthWrite`: lines and colour effects see them.
+//! Transparent meshes with `DepthWrite`: lines and color effects see them.
 
 use bevy::{image::ToExtents, render::render_resource::AsBindGroup};
 
@@ -32,7 +32,7 @@ pub fn change(small: &mut Small, object: Entity, change: impl Fn(&mut StandardMa
     change(&mut materials.get_mut(id).expect("it is there"));
 }
 
-/// An opaque mesh and a transparent one whose alpha is 1 have the same colours, so that the
+/// An opaque mesh and a transparent one whose alpha is 1 have the same colors, so that the
 /// styled pictures are equal, if the transparent one is in depth, normals and ids.
 #[test]
 fn it_is_drawn_as_an_opaque_mesh_would_be() {
@@ -280,7 +280,7 @@ fn the_line_follows_the_threshold() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The alphas of base colour and vertices are factors, in all modes and on both backs.
+/// The alphas of base color and vertices are factors, in all modes and on both backs.
 #[test]
 fn every_alpha_counts_in_every_mode() {
     let mut small = white();
@@ -339,7 +339,7 @@ fn it_is_an_object_like_others() {
     small.on(glass).insert(NoOutlines::default());
     assert_eq!(lines(&mut small), 0.0);
 
-    // Colour effects leave it alone.
+    // Color effects leave it alone.
     small.on(glass).remove::<NoOutlines>();
     let red = Color::srgba(0.9, 0.1, 0.1, 0.7);
     change(&mut small, glass, |m| m.base_color = red);

@@ -1,11 +1,11 @@
-//! Objects that the colour effects leave alone.
+//! Objects that the color effects leave alone.
 
 use crate::{
     ids::{cube, material},
     prelude::*,
 };
 
-/// Colour effects that change every colour of the small scene.
+/// Color effects that change every color of the small scene.
 fn colors() -> ComicStyle {
     ComicStyle::new()
         .with(ToneBands {
@@ -46,7 +46,7 @@ fn changes(small: &mut Small, style: &ComicStyle) -> Vec<(f32, usize, usize)> {
 /// The pixels of the object are those of the unstyled picture, bit for bit; those of others
 /// are not; multisampled pixels of its rim are in between.
 #[test]
-fn an_object_keeps_its_colours() {
+fn an_object_keeps_its_colors() {
     let mut small = Small::new(size(), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
@@ -67,7 +67,7 @@ fn an_object_keeps_its_colours() {
     }
 }
 
-/// A rim pixel of which k of n samples show the object has k/n of its own colour.
+/// A rim pixel of which k of n samples show the object has k/n of its own color.
 #[test]
 fn the_rim_mixes_by_samples() {
     let mut small = Small::new(size(), Msaa::Sample4);
@@ -135,7 +135,7 @@ fn descendants_inherit_it_where_asked() {
     assert_eq!(kept_with(None), none, "taken off");
 }
 
-/// Without such objects, and without colour effects, no ids are drawn for it.
+/// Without such objects, and without color effects, no ids are drawn for it.
 #[test]
 fn it_costs_nothing_where_it_does_nothing() {
     let mut small = Small::new(size(), Msaa::Off);

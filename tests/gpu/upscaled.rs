@@ -135,7 +135,7 @@ fn distance(at: Vec2, square: bool) -> f32 {
     away.fold(f32::MAX, f32::min)
 }
 
-fn centres() -> impl Iterator<Item = (usize, Vec2)> {
+fn centers() -> impl Iterator<Item = (usize, Vec2)> {
     (0..WIDTH * HEIGHT).map(|i| {
         let at = UVec2::new(i % WIDTH, i / WIDTH).as_vec2() + 0.5;
         (i as usize, at)
@@ -146,7 +146,7 @@ fn centres() -> impl Iterator<Item = (usize, Vec2)> {
 /// has ink at most `least` pixels away. A line of 1 px between two pixels has half of its
 /// ink in each.
 fn assert_along_sides(ink: &[f32], (most, least): (f32, f32), square: bool, what: &str) {
-    for (i, at) in centres() {
+    for (i, at) in centers() {
         let away = distance(at, square);
         assert!(
             ink[i] < 0.02 || away <= most,
@@ -298,7 +298,7 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
         let part = drawn(UVec2::new(WIDTH, HEIGHT), Some(viewport.clone()), main_pass);
         let whole = drawn(size, None, main_pass);
         assert!(whole.iter().sum::<f32>() > 500.0);
-        for (i, at) in centres() {
+        for (i, at) in centers() {
             let inside = at.as_ivec2() - first.as_ivec2();
             let wanted = if inside.cmpge(IVec2::ZERO).all() && inside.cmplt(size.as_ivec2()).all() {
                 whole[(inside.y * size.x as i32 + inside.x) as usize]
@@ -351,7 +351,7 @@ fn a_grazing_plane_has_lines_at_its_horizon_alone() {
             let is_wrong = |(i, at): &(usize, Vec2)| {
                 ink[*i] > 0.02 && (at.y - horizon(&camera, at.x)).abs() > most
             };
-            let wrong = centres().filter(is_wrong).count();
+            let wrong = centers().filter(is_wrong).count();
             assert_eq!(wrong, 0, "{name}, scale {scale}: pixels of false ink");
             let lined = ink.iter().any(|i| *i > 0.4);
             assert!(lined, "{name}, scale {scale}: no horizon");
@@ -360,7 +360,7 @@ fn a_grazing_plane_has_lines_at_its_horizon_alone() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The paper's contours include slopes, and its outlines compare 5 x 5 neighbours, between which a
+/// The paper's contours include slopes, and its outlines compare 5 x 5 neighbors, between which a
 /// slope would be a staircase: both are those of a view of the main pass's size.
 #[test]
 fn faithful_lines_are_those_of_a_view_of_the_main_passs_size() {
@@ -398,10 +398,10 @@ fn faithful_lines_are_those_of_a_view_of_the_main_passs_size() {
     ] {
         let high = ink(&mut small, &style);
         let mut inked = 0;
-        for (i, at) in centres() {
+        for (i, at) in centers() {
             let texel = (0.5 * at).as_uvec2();
             let wanted = low[(texel.y * size.x + texel.x) as usize];
-            // Eight bits, over two colours of the picture.
+            // Eight bits, over two colors of the picture.
             let same = (high[i] - wanted).abs() <= 0.03;
             assert!(same, "{name}, {at}: {}, {wanted}", high[i]);
             inked += usize::from(wanted > 0.5);
@@ -429,7 +429,7 @@ fn an_even_slope_is_as_steep_at_every_resolution() {
     }));
     for scale in SCALES {
         override_main_pass(&mut small, main_pass(scale));
-        // The range ends at centres of texels: half a texel of the border is missing at
+        // The range ends at centers of texels: half a texel of the border is missing at
         // both ends, so the slope is steeper by 1 % at most.
         for (threshold, filled) in [(0.85, true), (1.15, false)] {
             let flats = BlackFlats {
@@ -444,7 +444,7 @@ fn an_even_slope_is_as_steep_at_every_resolution() {
                 let size = Vec2::new(WIDTH as f32, HEIGHT as f32);
                 at.cmpgt(Vec2::splat(4.0)).all() && at.cmplt(size - 4.0).all()
             };
-            let wrong = centres().filter(|(i, at)| inside(*at) && (ink[*i] > 0.5) != filled);
+            let wrong = centers().filter(|(i, at)| inside(*at) && (ink[*i] > 0.5) != filled);
             assert_eq!(wrong.count(), 0, "scale {scale}, threshold {threshold}");
         }
     }

@@ -26,7 +26,7 @@ const ALONE: &str = "WARNINGS_ALONE";
 /// Part of each warning: in the log once, however many frames are drawn.
 const WARNINGS: [&str; 10] = [
     "is a Camera2d",
-    "has no colour target",
+    "has no color target",
     "`LensDistortion` on",
     "a full-screen effect of Bevy makes the picture of the overlay",
     "do not fade in its fog",

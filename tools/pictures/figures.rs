@@ -108,8 +108,8 @@ fn measure(
     let picture = RgbaImage::from_fn(depth.width, depth.height, |x, y| {
         let value = values[(y * depth.width + x) as usize];
         // Eq. 2 to 4: depth is 1 near and 0 far.
-        let grey = value.map_or(0, |d| ((1.0 - d) * 255.0).round() as u8);
-        Rgba([grey, grey, grey, 255])
+        let gray = value.map_or(0, |d| ((1.0 - d) * 255.0).round() as u8);
+        Rgba([gray, gray, gray, 255])
     });
     Ok(Measured {
         picture,

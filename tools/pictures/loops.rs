@@ -89,7 +89,7 @@ fn lines() -> Vec<RgbaImage> {
     frames.collect()
 }
 
-/// An animated PNG of `colors` colours. A frame has only the pixels that differ from the one
+/// An animated PNG of `colors` colors. A frame has only the pixels that differ from the one
 /// before.
 fn save(frames: &[RgbaImage], colors: usize, path: &Path) -> Result<(), String> {
     let palette = Palette::of(frames, colors);
@@ -104,7 +104,7 @@ fn encode(frames: &[RgbaImage], palette: &Palette, path: &Path) -> Result<(), pn
     let mut encoder = png::Encoder::new(file, SIZE.x, SIZE.y);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
-    // The first colour of the file is transparent.
+    // The first color of the file is transparent.
     let colors = palette.colors.iter().flatten();
     encoder.set_palette([0; 3].iter().chain(colors).copied().collect::<Vec<u8>>());
     encoder.set_trns(vec![0u8]);

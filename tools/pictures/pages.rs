@@ -237,7 +237,7 @@ fn pane(studio: &mut Studio, [distance, right, height]: [f32; 3]) -> Entity {
         .id()
 }
 
-/// Glass before half of the view takes the depth, and so the grey, of what is behind it.
+/// Glass before half of the view takes the depth, and so the gray, of what is behind it.
 fn transparency() -> RgbaImage {
     let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
     pane(&mut studio, [6.0, 2.0, 3.4]);

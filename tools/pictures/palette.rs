@@ -1,4 +1,4 @@
-//! Few colours for many pictures, by median cut (Heckbert 1982).
+//! Few colors for many pictures, by median cut (Heckbert 1982).
 
 use std::collections::HashMap;
 
@@ -6,16 +6,16 @@ use image::RgbaImage;
 
 type Code = [u8; 3];
 
-/// A palette, and the place of each colour of the pictures in it.
+/// A palette, and the place of each color of the pictures in it.
 pub struct Palette {
     pub colors: Vec<Code>,
     places: HashMap<Code, u8>,
 }
 
-/// Colours with how many pixels have them.
+/// Colors with how many pixels have them.
 type Counted = Vec<(Code, usize)>;
 
-/// The channel in which colours differ most, and by how much.
+/// The channel in which colors differ most, and by how much.
 fn widest(colors: &Counted) -> (usize, u8) {
     let extent = |i: usize| {
         let values = || colors.iter().map(|(color, _)| color[i]);
@@ -26,7 +26,7 @@ fn widest(colors: &Counted) -> (usize, u8) {
     most.unwrap_or((0, 0))
 }
 
-/// Divides colours into two groups with as many pixels.
+/// Divides colors into two groups with as many pixels.
 fn divide(mut colors: Counted) -> [Counted; 2] {
     let (channel, _) = widest(&colors);
     colors.sort_unstable_by_key(|(color, _)| (color[channel], *color));
@@ -80,7 +80,7 @@ impl Palette {
         }
     }
 
-    /// The place of a colour of the pictures.
+    /// The place of a color of the pictures.
     pub fn place(&self, pixel: &image::Rgba<u8>) -> u8 {
         let place = self.places.get(&[pixel[0], pixel[1], pixel[2]]);
         place.copied().unwrap_or(0)

@@ -13,7 +13,7 @@ use crate::pages::put_lit;
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
 
-/// From left to right: no ramp, the default ramp, four tones with a soft edge, and the colours of
+/// From left to right: no ramp, the default ramp, four tones with a soft edge, and the colors of
 /// a poster in place of that of the surface.
 fn ramps() -> [Option<Ramp>; 4] {
     let skin = [

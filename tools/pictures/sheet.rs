@@ -14,7 +14,7 @@ use bevy_comics_testkit::{
 use crate::{gallery::scene_of, save};
 
 const GAP: u32 = 6;
-/// The colour of gutters.
+/// The color of gutters.
 const PAPER: image::Rgba<u8> = image::Rgba([250, 248, 242, 255]);
 
 fn style(name: &str) -> Result<bevy_comics::ComicStyle, String> {

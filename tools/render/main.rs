@@ -85,7 +85,7 @@ fn run() -> Result<(), String> {
             println!("wrote {}", path.display());
         }
         Output::Turntable(count, frames) => {
-            let pivot = model.as_ref().map_or(vantage.target, |m| m.extent.centre);
+            let pivot = model.as_ref().map_or(vantage.target, |m| m.extent.center);
             turntable::write(&mut headless, camera, pivot, *count, frames)?;
         }
     }

@@ -1,5 +1,5 @@
 //! How exactly the page is printed and painted, how many texels its effects fetch, and how exactly
-//! a harmony of colours keeps the lightness.
+//! a harmony of colors keeps the lightness.
 
 use bevy_comics::{
     ColorHarmony, Halftone,
@@ -10,7 +10,7 @@ use bevy_comics_testkit::{
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
     reference::{color, color_harmony::harmonize, halftone::Plate},
     screens::{
-        CELL_SIZES, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire,
+        CELL_SIZES, SHAPES, color_error, gray_inks, ideal, in_phase, largest_jump, moire,
         moire_of_inks, tone_error,
     },
     strokes::{largest_tone_step, mean_tone_error},
@@ -40,7 +40,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_work", &table)
 }
 
-/// The largest change of the lightness in `OKLab` by a harmony, of 32 x 32 x 32 colours at three
+/// The largest change of the lightness in `OKLab` by a harmony, of 32 x 32 x 32 colors at three
 /// places in the depth map; the complement is as strong as it can be.
 fn lightness_error(mode: HarmonyMode) -> f64 {
     let s = ColorHarmony {
@@ -94,7 +94,7 @@ fn screens(run: &Run) -> Table {
     table
 }
 
-/// Colours of four inks: ideal ones, ones that all take some of all light, and these without the
+/// Colors of four inks: ideal ones, ones that all take some of all light, and these without the
 /// phase of black.
 fn colors(run: &Run) -> Table {
     let mut table = Table::new(&["black", "ideal", "grey", "in_phase", "beats"]);
@@ -103,7 +103,7 @@ fn colors(run: &Run) -> Table {
             black_generation: black,
             ..ideal()
         };
-        let real = grey_inks(s);
+        let real = gray_inks(s);
         let cell = |error: f64| format!("{error:.5}");
         table.push(&[
             &black,
@@ -116,7 +116,7 @@ fn colors(run: &Run) -> Table {
     table
 }
 
-/// The slow part of a grey print with the default inks.
+/// The slow part of a gray print with the default inks.
 fn beats(black_generation: f32) -> f64 {
     let s = Halftone {
         black_generation,

@@ -93,7 +93,7 @@ fn lines() -> Vec<(String, Drawn)> {
     .collect()
 }
 
-/// Outlines with another width and colour in near, middle and far.
+/// Outlines with another width and color in near, middle and far.
 fn layer_lines() -> ComicStyle {
     let mut planes = DepthLayers::default();
     planes.background.line_color_amount = 1.0;

@@ -16,7 +16,7 @@ struct Plot<'a> {
     x: &'a str,
     y: &'a str,
     logarithmic: [bool; 2],
-    /// Whether the points are joined by a line. Then a grey one shows growth in proportion.
+    /// Whether the points are joined by a line. Then a gray one shows growth in proportion.
     joined: bool,
 }
 
@@ -104,9 +104,9 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
         let proportional = points
             .iter()
             .map(|p| (on_axis(p.0, 0), on_axis(y * p.0 / x, 1)));
-        let grey = RGBColor(150, 150, 150);
+        let gray = RGBColor(150, 150, 150);
         chart
-            .draw_series(LineSeries::new(proportional, &grey))
+            .draw_series(LineSeries::new(proportional, &gray))
             .map_err(problem)?;
         chart
             .draw_series(LineSeries::new(points.iter().map(|p| at(p)), &BLUE))

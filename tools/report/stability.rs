@@ -254,18 +254,18 @@ fn cubes(rig: &mut Rig, color: LinearRgba, scale: f32, origin: Vec3) {
 }
 
 fn rendered_cases() -> Vec<(&'static str, Scene)> {
-    const GREY: LinearRgba = LinearRgba::new(0.5, 0.4, 0.3, 1.0);
+    const GRAY: LinearRgba = LinearRgba::new(0.5, 0.4, 0.3, 1.0);
     vec![
         ("all sky", |_| {}),
         ("one pixel of geometry", |rig| {
             let at = Transform::from_xyz(0.003, 0.003, -5.0);
-            put(rig, Cuboid::from_length(0.02).into(), GREY, at);
+            put(rig, Cuboid::from_length(0.02).into(), GRAY, at);
         }),
         ("thin wires", |rig| {
             for i in 0..40u8 {
                 let x = 0.05 * f32::from(i) - 1.0;
                 let at = Transform::from_xyz(x, 0.0, -2.0 - 0.2 * f32::from(i));
-                put(rig, Cuboid::new(0.001, 2.0, 0.001).into(), GREY, at);
+                put(rig, Cuboid::new(0.001, 2.0, 0.001).into(), GRAY, at);
             }
         }),
         ("HDR colour of 65504", |rig| {
@@ -291,10 +291,10 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
             let mut mesh: Mesh = Cuboid::from_length(1.0).into();
             let count = mesh.count_vertices();
             mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0f32; 3]; count]);
-            put(rig, mesh, GREY, Transform::from_xyz(0.2, 0.1, -4.0));
+            put(rig, mesh, GRAY, Transform::from_xyz(0.2, 0.1, -4.0));
         }),
         ("a world a millionth the size", |rig| {
-            cubes(rig, GREY, 1e-6, Vec3::ZERO);
+            cubes(rig, GRAY, 1e-6, Vec3::ZERO);
             let tiny = PerspectiveProjection {
                 near: 1e-7,
                 ..default()
@@ -305,10 +305,10 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
                 .insert(Projection::Perspective(tiny));
         }),
         ("a world a million times the size", |rig| {
-            cubes(rig, GREY, 1e6, Vec3::ZERO);
+            cubes(rig, GRAY, 1e6, Vec3::ZERO);
         }),
         ("camera at 1e6 from the origin", |rig| {
-            cubes(rig, GREY, 1.0, Vec3::new(1e6, 0.0, -1e6));
+            cubes(rig, GRAY, 1.0, Vec3::new(1e6, 0.0, -1e6));
         }),
     ]
 }

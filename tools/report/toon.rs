@@ -23,8 +23,8 @@ use bevy_comics_testkit::{
 
 use crate::{Run, rig::Rig, table::Table};
 
-/// An image of greys, darker to the left.
-fn greys(images: &mut Assets<Image>, width: u32, height: u32) -> Handle<Image> {
+/// An image of grays, darker to the left.
+fn grays(images: &mut Assets<Image>, width: u32, height: u32) -> Handle<Image> {
     let texel = |k: u32| {
         let code = (255 * (k % width) / (width - 1)) as u8;
         [code, code, code, 255]
@@ -51,7 +51,7 @@ fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> 
             detail,
             ..Ramp::default()
         }),
-        ramp_map: greys(images, 256, height).into(),
+        ramp_map: grays(images, 256, height).into(),
         ..default()
     };
     let row = painted(RampMode::LightFraction, 1, None);
@@ -59,7 +59,7 @@ fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> 
     let rows = painted(RampMode::LightFraction, 64, Some(RampDetail::default()));
     let thresholds = ToonLight {
         ramp: Some(Ramp::default()),
-        threshold_map: Some(greys(images, 256, 256)),
+        threshold_map: Some(grays(images, 256, 256)),
         ..default()
     };
     vec![

@@ -101,7 +101,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// A dot in the colour of a pass's line in the chart.
+/// A dot in the color of a pass's line in the chart.
 fn dot(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
     ui.painter().circle_filled(rect.center(), 4.0, color);

@@ -363,7 +363,7 @@ fn set_toolkit_options(ui: &Ui) {
         // mistake in debug builds.
         style.debug.warn_if_rect_changes_id = false;
         if style.visuals.dark_mode {
-            // The default colours have too little contrast on the dark panel.
+            // The default colors have too little contrast on the dark panel.
             style.visuals.weak_text_color = Some(Color32::from_gray(145));
             style.visuals.error_fg_color = Color32::from_rgb(255, 128, 110);
             style.visuals.disabled_alpha = 0.65;

@@ -260,7 +260,7 @@ fn end(world: &mut World, shot: Shot) {
     world.resource_mut::<Assets<Image>>().remove(&shot.image);
 }
 
-/// The colours of a screenshot without alpha.
+/// The colors of a screenshot without alpha.
 fn colors(image: &Image) -> Result<image::RgbImage, String> {
     let size = image.size();
     let bytes = image.data.as_ref().ok_or("The screenshot is empty.")?;

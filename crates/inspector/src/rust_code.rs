@@ -277,7 +277,7 @@ fn float(name: &str, value: f64, debug: &str) -> String {
     }
 }
 
-/// The constructor of a colour, in its own colour space.
+/// The constructor of a color, in its own color space.
 fn color(color: Color) -> String {
     if color == Color::BLACK {
         return "Color::BLACK".into();
@@ -311,7 +311,7 @@ fn color(color: Color) -> String {
     format!("Color::{space}{alpha}({})", parts.join(", "))
 }
 
-/// The 8-bit components of an opaque colour, if they are exact.
+/// The 8-bit components of an opaque color, if they are exact.
 fn codes(color: Srgba) -> Option<[u8; 3]> {
     let codes = [color.red, color.green, color.blue].map(|part| (part * 255.0).round() as u8);
     let [red, green, blue] = codes;

@@ -191,7 +191,7 @@ mod tests {
             Some(Found::Whole)
         );
         assert_eq!(section::<Vignette>("vignette", "laplace"), None);
-        // But not by the colour spaces of a colour.
+        // But not by the color spaces of a color.
         assert_eq!(setting::<Contours>("contours.color", "oklab"), None);
         assert_eq!(section::<Contours>("contours", "contours zzz"), None);
     }

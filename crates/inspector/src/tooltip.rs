@@ -292,10 +292,10 @@ mod tests {
     fn a_tooltip_says_what_a_setting_does_then_its_range_then_its_source() {
         assert_eq!(
             tooltip(
-                " Mixes a colour in (\\[CS\\] Eq. 6 and 7). Range 0 to 1, default 0.5.\n\
+                " Mixes a color in (\\[CS\\] Eq. 6 and 7). Range 0 to 1, default 0.5.\n\
                  More of it (at the far end) hides detail.\n"
             ),
-            "Mixes a colour in. More of it (at the far end) hides detail.\n\
+            "Mixes a color in. More of it (at the far end) hides detail.\n\
              Range 0 to 1, default 0.5.\n\
              Source: Suarez et al. Eq. 6 and 7."
         );

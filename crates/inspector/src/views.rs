@@ -30,14 +30,11 @@ fn describe(view: DebugView, types: &[&EffectType]) -> (&'static str, &'static s
         ),
         DebugView::Silhouettes => ("Silhouettes", "Black: a full line."),
         DebugView::Creases => ("Creases", "Black: a full line."),
-        DebugView::ObjectIds => (
-            "Object ids",
-            "One colour for each object. Black: no object.",
-        ),
+        DebugView::ObjectIds => ("Object ids", "One color for each object. Black: no object."),
         DebugView::Saturation => ("Saturation mask", "White: full saturation. Black: none."),
         DebugView::Difference => (
             "Difference from the original",
-            "Absolute difference of the display colours, four times as bright.",
+            "Absolute difference of the display colors, four times as bright.",
         ),
         DebugView::Effect(name) => types
             .iter()

@@ -8,14 +8,14 @@ use crate::scenes::{
     shape::rgb,
 };
 
-/// Metres between a camera and the forest in its pictures.
+/// Meters between a camera and the forest in its pictures.
 pub const DISTANCE: f32 = 500.0;
-/// Half of the width and of the depth of the forest, in metres.
+/// Half of the width and of the depth of the forest, in meters.
 const HALF: Vec2 = Vec2::new(150.0, 60.0);
 const TREES: usize = 1500;
 
 /// The meshes of six kinds of tree, and where trees of each kind stand, on the ground around the
-/// origin. Trees are 5 to 9 metres high, as the forest of a far hill, and the same in every run.
+/// origin. Trees are 5 to 9 meters high, as the forest of a far hill, and the same in every run.
 pub fn forest() -> Vec<(Mesh, Vec<Transform>)> {
     let mut random = Random::new(14);
     let leaf = rgb(0x4f8f3a);

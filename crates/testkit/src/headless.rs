@@ -154,7 +154,7 @@ pub struct Adapter {
     pub limits: wgpu::Limits,
     /// Largest width and height of a picture in pixels.
     pub max_size: u32,
-    /// Sample counts that targets of colour, HDR colour and depth all support.
+    /// Sample counts that targets of color, HDR color and depth all support.
     pub samples: Vec<u32>,
 }
 

@@ -1,7 +1,7 @@
 //! Counts the texels that effects of the page fetch, in all passes of their view together.
 //!
-//! How many there are does not depend on the colours of the picture. So every pass returns its
-//! count instead of colours, and adds that of the passes before it.
+//! How many there are does not depend on the colors of the picture. So every pass returns its
+//! count instead of colors, and adds that of the passes before it.
 
 use bevy::render::{RenderApp, sync_world::RenderEntity};
 use bevy_comics::{

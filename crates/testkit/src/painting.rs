@@ -18,7 +18,7 @@ pub fn random(i: usize) -> f64 {
     f64::from(noise::hash(i as u32) >> 8) / f64::from(1 << 24)
 }
 
-/// A sheet of random colours.
+/// A sheet of random colors.
 pub fn noisy(size: [usize; 2]) -> Sheet {
     Sheet::new(size, |[x, y]| {
         let of = |c: usize| random(3 * (y * size[0] + x) + c);

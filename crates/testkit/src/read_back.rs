@@ -53,14 +53,14 @@ fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
     bytes
 }
 
-/// The bytes of a single-sampled colour texture, rows without padding.
+/// The bytes of a single-sampled color texture, rows without padding.
 pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
     let device = render_world.resource::<RenderDevice>().wgpu_device();
     let queue = render_world.resource::<RenderQueue>();
     let texel = texture
         .format()
         .block_copy_size(None)
-        .expect("a colour format");
+        .expect("a color format");
     let row = texture.width() * texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -89,7 +89,7 @@ pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
         .collect()
 }
 
-/// The values that a shader reads from a colour texture: sRGB formats are decoded.
+/// The values that a shader reads from a color texture: sRGB formats are decoded.
 pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage {
     let bytes = texture_bytes(render_world, texture);
     let unorm = |b: u8| f32::from(b) / 255.0;

@@ -67,7 +67,7 @@ pub fn ideal() -> Halftone {
     }
 }
 
-/// 20 colours in linear light, spread over all.
+/// 20 colors in linear light, spread over all.
 pub fn colors() -> impl Iterator<Item = [f64; 3]> {
     (0..20u32).map(|i| {
         let part = |k: u32| f64::from((i * 7 + 3) * k % 19) / 18.0;
@@ -158,7 +158,7 @@ pub fn moire(shape: ScreenShape, cell_size: f64, degrees: f64, zones: bool) -> f
     })
 }
 
-/// The slow part of the light of a grey print with all four inks, whose screens beat with each
+/// The slow part of the light of a gray print with all four inks, whose screens beat with each
 /// other.
 pub fn moire_of_inks(s: &Halftone, zones: bool) -> f64 {
     let plates = Plate::all(s, 1.0);
@@ -170,7 +170,7 @@ pub fn moire_of_inks(s: &Halftone, zones: bool) -> f64 {
     })
 }
 
-/// The mean light of a print of a flat colour with these plates. `tones`: those of the plates.
+/// The mean light of a print of a flat color with these plates. `tones`: those of the plates.
 pub fn printed_mean(s: &Halftone, plates: [Plate; 4], tones: [f64; 4]) -> [f64; 3] {
     let covers: [_; 4] = std::array::from_fn(|i| plate_cover(s.shape, plates[i], tones[i], &tile));
     let prints = square(6.0).map(|place| inked(s, std::array::from_fn(|i| covers[i](place))));
@@ -190,21 +190,21 @@ pub fn in_phase(s: &Halftone) -> [Plate; 4] {
 
 /// Inks that each take some of all light away: what they print depends on whether their screens
 /// are independent.
-pub fn grey_inks(s: Halftone) -> Halftone {
-    let grey = Color::linear_rgb(0.2, 0.2, 0.2);
+pub fn gray_inks(s: Halftone) -> Halftone {
+    let gray = Color::linear_rgb(0.2, 0.2, 0.2);
     Halftone {
-        cyan: grey,
-        magenta: grey,
+        cyan: gray,
+        magenta: gray,
         yellow: Color::WHITE,
         ..s
     }
 }
 
 /// The largest difference of the mean light of a print from that of independent screens
-/// (Demichel), of 20 colours and three greys.
+/// (Demichel), of 20 colors and three grays.
 pub fn color_error(s: &Halftone, plates: [Plate; 4]) -> f64 {
-    let greys = [0.25, 0.4, 0.6].map(|v| [v; 3]);
-    let apart = colors().chain(greys).flat_map(|light| {
+    let grays = [0.25, 0.4, 0.6].map(|v| [v; 3]);
+    let apart = colors().chain(grays).flat_map(|light| {
         let tones = plate_tones(s, light);
         let (printed, want) = (printed_mean(s, plates, tones), inked(s, tones));
         [0, 1, 2].map(|c| (printed[c] - want[c]).abs())

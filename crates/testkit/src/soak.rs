@@ -263,7 +263,7 @@ impl Soak {
         }
     }
 
-    /// Samples and range of colours change from cycle to cycle.
+    /// Samples and range of colors change from cycle to cycle.
     fn set_up_camera(&mut self, kind: u64) {
         let mut camera = self.headless.app.world_mut().entity_mut(self.camera);
         let samples = [Msaa::Off, Msaa::Sample4];

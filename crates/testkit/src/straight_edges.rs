@@ -52,7 +52,7 @@ pub fn accepted(slope: f64) -> f64 {
 }
 
 /// The cracks along the edge `y = start + slope * x`, from column -80 to 280. A pixel is above the
-/// edge if its centre is.
+/// edge if its center is.
 pub fn cracks(slope: f64, start: f64) -> HashSet<Place> {
     let above = |x: i64, y: i64| y as f64 + 0.5 < start + slope * (x as f64 + 0.5);
     let mut cracks = HashSet::new();

@@ -187,7 +187,7 @@ fn part(picture: &RgbaImage, is: impl Fn(u8) -> bool) -> f64 {
     counted.count() as f64 / all
 }
 
-/// CIELAB (D65) of a display colour.
+/// CIELAB (D65) of a display color.
 fn lab(code: &[u8; 4]) -> [f64; 3] {
     let [r, g, b] = [0, 1, 2].map(|i| {
         let c = f64::from(code[i]) / 255.0;
@@ -208,7 +208,7 @@ fn lab(code: &[u8; 4]) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// The mean difference in CIELAB between the mean colours of near and middle, and of middle and
+/// The mean difference in CIELAB between the mean colors of near and middle, and of middle and
 /// far.
 fn contrast(picture: &RgbaImage, planes: &[Option<u8>]) -> f64 {
     let mut sums = [[0.0; 4]; 3];

@@ -1,6 +1,6 @@
 //! Which pixels should have a line, from the same scene at [`FINE`] times the resolution.
 //!
-//! A pixel has a line if two neighbours among its finer pixels differ:
+//! A pixel has a line if two neighbors among its finer pixels differ:
 //!
 //! * silhouette: the step of their raw depth exceeds the slopes on both sides by more than
 //!   2 % of the nearer depth;

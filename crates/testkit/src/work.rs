@@ -234,7 +234,7 @@ struct Counter {
 }
 
 /// Adds a call of the counter before every fetch. The fused pass then returns the counts
-/// instead of the colour.
+/// instead of the color.
 pub(crate) fn counting(path: &str, text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     if !text.contains("#define_import_path") {
@@ -339,7 +339,7 @@ impl WorkCounter {
     }
 }
 
-/// What a pass has written in place of the colours of a view: mean and maximum of the texels, and
+/// What a pass has written in place of the colors of a view: mean and maximum of the texels, and
 /// the mean of the bytes.
 pub(crate) fn counted(render_world: &World, view: Entity) -> ([f64; 2], f64) {
     let (_, counted) = read_back::pictures(render_world, view).expect("a picture");

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::abstraction
 
-// How abstract the picture is at a pixel, for the effects that follow, and paler colours.
+// How abstract the picture is at a pixel, for the effects that follow, and paler colors.
 
 #import bevy_comics::depth::map::graded
 #import bevy_comics::depth::view::view
@@ -45,7 +45,7 @@ fn abstraction_of(s: Abstraction, p: Pixel) -> f32 {
     return abstraction_at(s, select(d, 1.0 - d, view.flip != 0u), own);
 }
 
-// The colour with part of its saturation: mixed with the grey of its luminance.
+// The color with part of its saturation: mixed with the gray of its luminance.
 fn abstract_color(s: Abstraction, linear: vec3<f32>, a: f32) -> vec3<f32> {
     return mix(linear, vec3(luminance(linear)), a * (1.0 - s.saturation));
 }

@@ -1,4 +1,4 @@
-//! Fewer tones, lines and strokes, and paler colours, for what is far away.
+//! Fewer tones, lines and strokes, and paler colors, for what is far away.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -34,7 +34,7 @@ pub struct Abstraction {
     /// foreground is as it is near. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes
+    /// Whether an object as a whole is as abstract as its center, with all of its tones, strokes
     /// and lines, or as its [`ObjectSimplification`](crate::objects::ObjectSimplification) says.
     /// Default: [`Granularity::Object`]. Without compute shaders, lines follow pixels.
     pub granularity: Granularity,

@@ -25,7 +25,7 @@ struct BlackFlats {
     slope_scale: f32,
 }
 
-// Coverage of dark areas, 0 to 1. `linear` is the unstyled colour, `l` the
+// Coverage of dark areas, 0 to 1. `linear` is the unstyled color, `l` the
 // complement of the depth map.
 fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
     let threshold = s.value * mix(1.0, l, s.depth_weight);
@@ -44,7 +44,7 @@ fn steep_area(s: BlackFlats, prewitt: f32) -> f32 {
 }
 
 // Fills what is there: a background that shows through stays as it is. `picture` is a
-// colour multiplied by its opacity, and the opacity.
+// color multiplied by its opacity, and the opacity.
 fn fill(s: BlackFlats, picture: vec4<f32>, coverage: f32) -> vec3<f32> {
     return mix(picture.rgb, s.color * picture.a, clamp(coverage * s.opacity, 0.0, 1.0));
 }

@@ -40,7 +40,7 @@ pub struct BlackFlats {
     /// fraction of the threshold. Range 0 to 1, default 0.1.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the ink. Default: black. Components are clamped to what a display
+    /// Color of the ink. Default: black. Components are clamped to what a display
     /// shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::color_harmony
 
-// Moves colours to the other side of the wheel of hues, or to two hues that lie opposite each
+// Moves colors to the other side of the wheel of hues, or to two hues that lie opposite each
 // other.
 
 #import bevy_comics::depth::map::root_fraction
@@ -56,7 +56,7 @@ fn is_square_root(s: ColorHarmony) -> bool {
 #endif
 }
 
-// How far a colour is on its way to its complement, 0 to 1, from its lightness (0 black, 1
+// How far a color is on its way to its complement, 0 to 1, from its lightness (0 black, 1
 // white), the depth map `d` and its complement `l`.
 fn complement_weight(s: ColorHarmony, lightness: f32, d: f32, l: f32) -> f32 {
     if mode_of(s) == MODE_SHADE {
@@ -82,12 +82,12 @@ fn harmonized_chroma(s: ColorHarmony, lab: vec3<f32>, d: f32, l: f32) -> vec2<f3
         let n = sin(HALF_TURN * w);
         return vec2(c * chroma.x - n * chroma.y, n * chroma.x + c * chroma.y);
     }
-    // mix(chroma, -complement * chroma, w), through grey.
+    // mix(chroma, -complement * chroma, w), through gray.
     return chroma * (1.0 - w * (1.0 + s.complement));
 }
 
 // Turns the HSV hue by at most half a turn: the complement in the form of [CS] Eq. 9 to 11.
-// Value and saturation stay, so greys stay grey.
+// Value and saturation stay, so grays stay gray.
 fn faithful_harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
     let c = srgb_encode(linear);
     let value = largest(c);
@@ -97,7 +97,7 @@ fn faithful_harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec
     return srgb_decode(mix(c, turned, s.amount));
 }
 
-// Changes the chroma in OKLab and keeps the lightness. A colour inside the display's gamut
+// Changes the chroma in OKLab and keeps the lightness. A color inside the display's gamut
 // stays inside, and one outside of it does not get farther out.
 fn harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
     if is_faithful(s) && mode_of(s) != MODE_TWO_HUES {
@@ -107,8 +107,8 @@ fn harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
     let chroma = mix(lab.yz, harmonized_chroma(s, lab, d, l), s.amount);
     let changed = in_gamut(oklab_to_linear(vec3(lab.x, chroma)), lab.x, linear);
     // Without the rounding of the conversions.
-    let keeps_greys = mode_of(s) != MODE_TWO_HUES || s.offset == 0.0;
-    return select(changed, linear, keeps_greys && largest(linear) == smallest(linear));
+    let keeps_grays = mode_of(s) != MODE_TWO_HUES || s.offset == 0.0;
+    return select(changed, linear, keeps_grays && largest(linear) == smallest(linear));
 }
 
 fn color_harmony(s: ColorHarmony, p: Pixel) -> Pixel {

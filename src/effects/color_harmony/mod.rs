@@ -1,4 +1,4 @@
-//! Moves colours to opposite hues.
+//! Moves colors to opposite hues.
 
 use bevy::{
     color::{Color, ColorToComponents, Oklaba},
@@ -14,31 +14,31 @@ use crate::{
     settings::{Equations, FieldRange, HueWheel, color_serde},
 };
 
-/// Brings the colours of the picture into harmony: two opposite hues for everything, or
+/// Brings the colors of the picture into harmony: two opposite hues for everything, or
 /// opposite hues for what is far away or in the shade.
 ///
-/// Lightness and greys stay as they are. A new colour that the display cannot show is paler.
-/// Complementary colours are future work in \[CS\].
+/// Lightness and grays stay as they are. A new color that the display cannot show is paler.
+/// Complementary colors are future work in \[CS\].
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColorHarmony {
-    /// Which colours change, and to which others. Default: [`HarmonyMode::TwoHues`].
+    /// Which colors change, and to which others. Default: [`HarmonyMode::TwoHues`].
     pub mode: HarmonyMode,
     /// How the change grows with the depth map in the modes [`HarmonyMode::Distance`] and
     /// [`HarmonyMode::Rotation`]. Default: [`HarmonyCurve::Linear`].
     pub curve: HarmonyCurve,
-    /// Saturation of the opposite hue as a fraction of what the colour had, in the modes
-    /// [`HarmonyMode::Distance`] and [`HarmonyMode::Shade`] of [`Equations::Corrected`]. At 0 colours
-    /// become grey. Range 0 to 1.5, default 0.8.
+    /// Saturation of the opposite hue as a fraction of what the color had, in the modes
+    /// [`HarmonyMode::Distance`] and [`HarmonyMode::Shade`] of [`Equations::Corrected`]. At 0 colors
+    /// become gray. Range 0 to 1.5, default 0.8.
     #[reflect(@FieldRange::linear(0.0, 1.5))]
     pub complement: f32,
-    /// How far the darkest colours move towards their opposite, in the mode [`HarmonyMode::Shade`].
-    /// Lighter colours move less, by the square of their darkness. Range 0 to 1, default 0.35.
+    /// How far the darkest colors move towards their opposite, in the mode [`HarmonyMode::Shade`].
+    /// Lighter colors move less, by the square of their darkness. Range 0 to 1, default 0.35.
     #[reflect(@FieldRange::FRACTION)]
     pub shade: f32,
     /// One of the two hues of [`HarmonyMode::TwoHues`]; the other is its opposite. Only the hue
-    /// is used; a grey has none, and colours become paler. Default: `#e38b4b`, an orange, whose
+    /// is used; a gray has none, and colors become paler. Default: `#e38b4b`, an orange, whose
     /// opposite is a teal blue. Components are clamped to what a display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
@@ -48,14 +48,14 @@ pub struct ColorHarmony {
     #[reflect(@FieldRange::FRACTION)]
     pub pull: f32,
     /// Chroma in `OKLab` that is added to everything in the mode [`HarmonyMode::TwoHues`]: towards
-    /// `color` at the near end of the depth map, and towards its opposite at the far end. Greys are
+    /// `color` at the near end of the depth map, and towards its opposite at the far end. Grays are
     /// tinted too. The depth map is read if it is not 0. Range -0.1 to 0.1, default 0.03.
     #[reflect(@FieldRange::linear(-0.1, 0.1))]
     pub offset: f32,
     /// Fraction of the change that is applied. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Selects how colours go to their opposite. [`Equations::Corrected`] changes the chroma in
+    /// Selects how colors go to their opposite. [`Equations::Corrected`] changes the chroma in
     /// `OKLab`.
     /// [`Equations::Faithful`] turns the HSV hue by up to half a turn, as \[CS\] Eq. 9 to 11 do, and
     /// keeps value and saturation: `complement` is not used, [`HarmonyMode::Distance`] is as
@@ -64,7 +64,7 @@ pub struct ColorHarmony {
     pub equations: Equations,
 }
 
-/// Which colours a [`ColorHarmony`] changes, and to which others.
+/// Which colors a [`ColorHarmony`] changes, and to which others.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -74,12 +74,12 @@ pub enum HarmonyMode {
     #[default]
     TwoHues,
     /// Near things keep their hues, and far things take the opposite ones; in between they are
-    /// grey.
+    /// gray.
     Distance,
     /// Near things keep their hues, and far things take the opposite ones; in between, hues turn
-    /// around the colour wheel.
+    /// around the color wheel.
     Rotation,
-    /// Dark colours take some of their opposite, as in the shadows of painters.
+    /// Dark colors take some of their opposite, as in the shadows of painters.
     Shade,
 }
 
@@ -96,8 +96,8 @@ pub enum HarmonyCurve {
 
 const DEFAULT_COLOR: Color = Color::srgb(227.0 / 255.0, 139.0 / 255.0, 75.0 / 255.0);
 
-/// Chroma below which a colour has no hue.
-const GREY: f32 = 1e-4;
+/// Chroma below which a color has no hue.
+const GRAY: f32 = 1e-4;
 
 impl Default for ColorHarmony {
     fn default() -> Self {
@@ -180,7 +180,7 @@ impl Effect for ColorHarmony {
         let [_, a, b, _] = Oklaba::from(self.color).to_f32_array();
         let hue = Vec2::new(a, b);
         ColorHarmonyUniform {
-            hue: if hue.length() > GREY {
+            hue: if hue.length() > GRAY {
                 hue.normalize()
             } else {
                 Vec2::ZERO

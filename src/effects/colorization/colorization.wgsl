@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::colorization
 
-// Colours the picture with an atmosphere ([CS] Eq. 8 to 11).
+// Colors the picture with an atmosphere ([CS] Eq. 8 to 11).
 
 #import bevy_comics::depth::map::root_fraction
 #import bevy_comics::effect::color::{hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode, srgb_encode}
@@ -14,7 +14,7 @@ const MODE_SQUARE_ROOT: u32 = 3u;
 struct Colorization {
     // Direction of the atmosphere's chroma in OKLab: a unit vector (a, b).
     direction: vec2<f32>,
-    // Lightness of the most saturated displayable colour of that hue, and the
+    // Lightness of the most saturated displayable color of that hue, and the
     // chroma of the atmosphere at that lightness.
     cusp_lightness: f32,
     cusp_chroma: f32,
@@ -55,8 +55,8 @@ fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
     return root_fraction(d, l);
 }
 
-// Replaces the HSV hue of the display code; value and saturation stay, so greys
-// stay grey. The weights of Eq. 11 sum to more than 1, as printed ([CS] Eq. 9 to
+// Replaces the HSV hue of the display code; value and saturation stay, so grays
+// stay gray. The weights of Eq. 11 sum to more than 1, as printed ([CS] Eq. 9 to
 // 11).
 fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
     let c = srgb_encode(linear);
@@ -73,7 +73,7 @@ fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3
 }
 
 // Blends chroma vectors in OKLab and keeps the lightness: hues do not wrap round,
-// opposite hues meet in grey, and greys take the atmosphere too. `saturation` is
+// opposite hues meet in gray, and grays take the atmosphere too. `saturation` is
 // the fraction that Desaturation has left; MODE_ATMOSPHERE, which does not depend
 // on distance itself, scales the atmosphere by it.
 fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32) -> vec3<f32> {

@@ -1,4 +1,4 @@
-//! Colours the picture with the hue of an atmosphere, everywhere or increasingly
+//! Colors the picture with the hue of an atmosphere, everywhere or increasingly
 //! with distance (\[CS\] Eq. 8 to 11).
 
 mod oklab;
@@ -17,7 +17,7 @@ use crate::{
     settings::{Equations, FieldRange, HueWheel, color_serde, mix_fields, same_modes},
 };
 
-/// Colours the picture with the hue of an atmosphere, everywhere or increasingly
+/// Colors the picture with the hue of an atmosphere, everywhere or increasingly
 /// with distance (\[CS\] Eq. 8 to 11).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,11 +27,11 @@ pub struct Colorization {
     /// everywhere, or increasingly with distance. Default:
     /// [`ColorizationMode::SquareRoot`].
     pub mode: ColorizationMode,
-    /// Colour of the atmosphere. [`Equations::Corrected`] uses its hue and saturation: at
-    /// full effect, a grey of the same lightness becomes this colour.
+    /// Color of the atmosphere. [`Equations::Corrected`] uses its hue and saturation: at
+    /// full effect, a gray of the same lightness becomes this color.
     /// [`Equations::Faithful`] uses only its hue, `a_h` in \[CS\]. Default: `#c8413a`, a
     /// warm red. Components are clamped to what a display shows; alpha is ignored; a
-    /// colour that is not finite becomes the default.
+    /// color that is not finite becomes the default.
     #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub color: Color,
@@ -39,9 +39,9 @@ pub struct Colorization {
     /// 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Selects how colours change. [`Equations::Corrected`] blends chroma in `OKLab` and
-    /// keeps the lightness; greys are tinted too. [`Equations::Faithful`] changes the HSV
-    /// hue and keeps value and saturation; greys stay grey, and a hue between two
+    /// Selects how colors change. [`Equations::Corrected`] blends chroma in `OKLab` and
+    /// keeps the lightness; grays are tinted too. [`Equations::Faithful`] changes the HSV
+    /// hue and keeps value and saturation; grays stay gray, and a hue between two
     /// others can be unrelated to both. Default: [`Equations::Corrected`]. Source of the
     /// faithful equations: \[CS\] Eq. 9 to 11 as printed.
     pub equations: Equations,
@@ -152,7 +152,7 @@ impl Effect for Colorization {
         let hue = Hsva::from(self.color).hue / 360.0;
         let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
         let chroma = a.hypot(b);
-        // A grey atmosphere has no hue: the blend only removes colour.
+        // A gray atmosphere has no hue: the blend only removes color.
         let direction = if chroma > 1e-4 {
             [a / chroma, b / chroma]
         } else {
@@ -181,8 +181,8 @@ impl Effect for Colorization {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        // With the faithful equations, hues between two colours are unrelated to both, so
-        // colours are not interpolated but count as modes.
+        // With the faithful equations, hues between two colors are unrelated to both, so
+        // colors are not interpolated but count as modes.
         let colors_mix = !self.is_faithful() || self.color == other.color;
         colors_mix && same_modes(self, other)
     }

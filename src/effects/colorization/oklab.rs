@@ -1,7 +1,7 @@
 //! The largest chroma that the sRGB gamut has at an `OKLab` hue and lightness: the
 //! limit for the chroma of an atmosphere (`OKLab`: Ottosson 2020).
 
-/// Linear sRGB of an `OKLab` colour.
+/// Linear sRGB of an `OKLab` color.
 fn linear_from_oklab(l: f64, a: f64, b: f64) -> [f64; 3] {
     let cube = |x: f64| x * x * x;
     let (p, q, r) = (
@@ -16,7 +16,7 @@ fn linear_from_oklab(l: f64, a: f64, b: f64) -> [f64; 3] {
     ]
 }
 
-/// Lightness and chroma of the most saturated displayable colour of a hue: the cusp
+/// Lightness and chroma of the most saturated displayable color of a hue: the cusp
 /// of the sRGB gamut. The hue is a unit vector (a, b).
 pub(super) fn cusp(direction: [f64; 2]) -> (f64, f64) {
     let [a, b] = direction;

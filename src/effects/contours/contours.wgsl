@@ -31,7 +31,7 @@ struct Contours {
     faithful: u32,
 }
 
-// The slope of the plane through the centre, from two opposite neighbours at the same
+// The slope of the plane through the center, from two opposite neighbors at the same
 // distance: raw depth per this distance. Raw depth is affine over a plane, in perspective
 // too. The plane is continued by the smaller of the two slopes, so the steps on a flat
 // surface are 0 at any angle.
@@ -52,7 +52,7 @@ fn plane_slope(before: f32, c: f32, after: f32) -> f32 {
     return select(back, ahead, no_before);
 }
 
-// The steps of two opposite neighbours over the plane through the centre: (before,
+// The steps of two opposite neighbors over the plane through the center: (before,
 // after), in units of the depth map.
 fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<f32> {
     let sky = is_background(c);
@@ -63,25 +63,25 @@ fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<
     );
 }
 
-// The steps of all eight neighbours over local planes. A pair with one side outside
+// The steps of all eight neighbors over local planes. A pair with one side outside
 // the viewport is left at 0: the border of the picture is no contour.
 fn plane_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     var steps: Steps;
     let across = (win.missing & (MISSING_W | MISSING_E)) == 0u;
     let along = (win.missing & (MISSING_N | MISSING_S)) == 0u;
     if across {
-        let h = plane_pair(f, gap, win.w, win.centre, win.e);
+        let h = plane_pair(f, gap, win.w, win.center, win.e);
         steps.w = h.x;
         steps.e = h.y;
     }
     if along {
-        let v = plane_pair(f, gap, win.n, win.centre, win.s);
+        let v = plane_pair(f, gap, win.n, win.center, win.s);
         steps.n = v.x;
         steps.s = v.y;
     }
     if across && along {
-        let a = plane_pair(f, gap, win.nw, win.centre, win.se);
-        let b = plane_pair(f, gap, win.ne, win.centre, win.sw);
+        let a = plane_pair(f, gap, win.nw, win.center, win.se);
+        let b = plane_pair(f, gap, win.ne, win.center, win.sw);
         steps.nw = a.x;
         steps.se = a.y;
         steps.ne = b.x;
@@ -90,14 +90,14 @@ fn plane_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     return steps;
 }
 
-// The same where the taps of opposite neighbours are at different distances from the
-// centre, some of them 0: (west, north, east, south). `slope` is that of the plane per
+// The same where the taps of opposite neighbors are at different distances from the
+// center, some of them 0: (west, north, east, south). `slope` is that of the plane per
 // unit of distance, across and down.
 fn uneven_plane_steps(f: DepthFrame, gap: f32, win: Window, distances: vec4<f32>, slope: vec2<f32>) -> Steps {
     var steps: Steps;
     let across = (win.missing & (MISSING_W | MISSING_E)) == 0u;
     let along = (win.missing & (MISSING_N | MISSING_S)) == 0u;
-    let c = win.centre;
+    let c = win.center;
     let sky = is_background(c);
     let low = -distances.xy * slope;
     let high = distances.zw * slope;
@@ -193,7 +193,7 @@ fn line(s: Contours, response: f32) -> f32 {
     return smoothstep(s.low, s.high, response);
 }
 
-// Draws ink over the picture, a colour in linear light that is multiplied by its
+// Draws ink over the picture, a color in linear light that is multiplied by its
 // opacity, and the opacity. `depth` is D of the nearer side, which the line belongs to:
 // the line fades with it.
 fn draw_contour(s: Contours, picture: vec4<f32>, coverage: f32, depth: f32) -> vec4<f32> {
@@ -240,7 +240,7 @@ fn texel_slope(win: Window, distance: vec2<i32>) -> vec2<f32> {
     let e = select(win.e, 0.0, (win.missing & MISSING_E) != 0u);
     let n = select(win.n, 0.0, (win.missing & MISSING_N) != 0u);
     let s = select(win.s, 0.0, (win.missing & MISSING_S) != 0u);
-    let slope = vec2(plane_slope(w, win.centre, e), plane_slope(n, win.centre, s));
+    let slope = vec2(plane_slope(w, win.center, e), plane_slope(n, win.center, s));
     return slope / vec2<f32>(max(distance, vec2(1)));
 }
 #endif

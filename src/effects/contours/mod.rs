@@ -51,7 +51,7 @@ pub struct Contours {
     /// rises from no jump to twice the threshold. Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line. Default: black. Components are clamped to what a display
+    /// Color of the line. Default: black. Components are clamped to what a display
     /// shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,
@@ -75,8 +75,8 @@ pub enum ContourOperator {
     /// Slightly crisper lines: as Prewitt, with the middle row and column weighted
     /// double.
     Sobel,
-    /// Emphasises corners and thin things: second differences of all eight
-    /// neighbours (\[CS\] 3.2).
+    /// Emphasizes corners and thin things: second differences of all eight
+    /// neighbors (\[CS\] 3.2).
     Laplace,
     /// Lighter, more broken lines: differences along the two diagonals only.
     Roberts,

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::depth_layers
 
-// Gives the foreground, the middle distance and the background colours of their own (after
+// Gives the foreground, the middle distance and the background colors of their own (after
 // Sauvaget and Boyer 2008).
 
 #import bevy_comics::depth::map::{depth_map, layer_weights}
@@ -14,7 +14,7 @@
 #import bevy_comics::objects::whole_depth
 #endif
 
-// How a layer changes OKLab colours: lightness to `contrast` times it plus `shift`, chroma to
+// How a layer changes OKLab colors: lightness to `contrast` times it plus `shift`, chroma to
 // `chroma` times it plus `tint`.
 struct LayerColors {
     tint: vec2<f32>,
@@ -59,11 +59,11 @@ fn layer_lightness(s: LayerColors, lightness: f32, change: f32) -> f32 {
     return s.contrast * tone + s.shift;
 }
 
-// The colour with these fractions of the layers. `change`: of the square root of the picture's
+// The color with these fractions of the layers. `change`: of the square root of the picture's
 // luminance, over a pixel.
 fn layers_color(s: DepthLayers, linear: vec3<f32>, w: vec3<f32>, change: f32) -> vec3<f32> {
     let lab = linear_to_oklab(linear);
-    // Lightness is the cube root of luminance for greys: the square root to the power of 2/3.
+    // Lightness is the cube root of luminance for grays: the square root to the power of 2/3.
     let lab_change = change * 0.6666667 * inverseSqrt(max(lab.x, 1e-3));
     let tones = vec3(
         layer_lightness(s.foreground, lab.x, lab_change),
@@ -100,7 +100,7 @@ fn layer_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
 #endif
 }
 
-// Fractions of the layers at a pixel: the mean over its samples, because its colour is their
+// Fractions of the layers at a pixel: the mean over its samples, because its color is their
 // mean too.
 fn pixel_weights(s: DepthLayers, p: Pixel) -> vec3<f32> {
     let borders = borders_of(s);

@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{BlendField, FieldRange, HueWheel, NotFinite, color_serde, impl_sanitized};
 
-/// Colours and lines of one of the [`DepthLayers`](crate::DepthLayers). The default changes
+/// Colors and lines of one of the [`DepthLayers`](crate::DepthLayers). The default changes
 /// nothing.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthLayer {
-    /// Factor of the saturation. Range 0 (grey) to 2, default 1.
+    /// Factor of the saturation. Range 0 (gray) to 2, default 1.
     #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.0))]
     pub saturation: f32,
-    /// Colour that the layer is tinted with: its hue and chroma in `OKLab`, at the lightness of the
+    /// Color that the layer is tinted with: its hue and chroma in `OKLab`, at the lightness of the
     /// picture. Default: `#7fa6c9`, a hazy blue. Components are clamped to what a display shows;
     /// alpha is ignored.
     #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub tint: Color,
-    /// How much of the colour comes from `tint`. At 1, only the lightness of the picture is left.
+    /// How much of the color comes from `tint`. At 1, only the lightness of the picture is left.
     /// Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION, @NotFinite(0.0))]
     pub tint_amount: f32,
@@ -47,14 +47,14 @@ pub struct DepthLayer {
     /// Factor of the opacity of lines. Range 0 (no lines) to 1, default 1.
     #[reflect(@FieldRange::FRACTION, @NotFinite(1.0))]
     pub line_opacity: f32,
-    /// Colour that lines take instead of theirs, see `line_color_amount`. Lines belong to the
+    /// Color that lines take instead of theirs, see `line_color_amount`. Lines belong to the
     /// surface in front; those of the faithful equations to what they are drawn on. Objects whose
-    /// `OutlineStyle` has a colour keep that. Default: `#000000`. Components are clamped to what a
+    /// `OutlineStyle` has a color keep that. Default: `#000000`. Components are clamped to what a
     /// display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub line_color: Color,
-    /// How much of the colour of lines comes from `line_color`, mixed in linear light. Range 0 to
+    /// How much of the color of lines comes from `line_color`, mixed in linear light. Range 0 to
     /// 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub line_color_amount: f32,

@@ -1,4 +1,4 @@
-//! Colours and lines of their own for the foreground, the middle and the background.
+//! Colors and lines of their own for the foreground, the middle and the background.
 
 mod layer;
 
@@ -19,7 +19,7 @@ use crate::{
     settings::{BlendField, FieldRange},
 };
 
-/// Divides the picture into foreground, middle and background, and gives each layer its own colours
+/// Divides the picture into foreground, middle and background, and gives each layer its own colors
 /// and lines, as comics do to show depth (after Sauvaget and Boyer 2008).
 ///
 /// By default the borders follow the scene: they lie where the visible distances fall into three
@@ -29,13 +29,13 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthLayers {
-    /// Colours and lines of the foreground. Default: unchanged.
+    /// Colors and lines of the foreground. Default: unchanged.
     #[reflect(@BlendField::Fields)]
     pub foreground: DepthLayer,
-    /// Colours and lines of the middle layer. Default: a little paler and bluer.
+    /// Colors and lines of the middle layer. Default: a little paler and bluer.
     #[reflect(@BlendField::Fields)]
     pub middle: DepthLayer,
-    /// Colours and lines of the background and of the sky. Default: pale, hazy and soft.
+    /// Colors and lines of the background and of the sky. Default: pale, hazy and soft.
     #[reflect(@BlendField::Fields)]
     pub background: DepthLayer,
     /// What belongs to one layer as a whole. Default: [`Granularity::Object`].
@@ -80,10 +80,10 @@ pub enum LayerBorders {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Granularity {
-    /// An object, by the depth of its centre, so that no figure is cut in two. An object that
+    /// An object, by the depth of its center, so that no figure is cut in two. An object that
     /// extends over more than 0.4 of the depth map, such as the ground, is divided by pixels; one
     /// that extends over less than 0.25 stays whole, and in between the two are blended. An object
-    /// changes its layer only when its centre has moved by 0.03 of the depth map, or by 15 % of its
+    /// changes its layer only when its center has moved by 0.03 of the depth map, or by 15 % of its
     /// depth in it if that is less. The meshes of an `OutlineGroup` are one object. Needs object
     /// ids, which are drawn; without the crate's feature `objects`, as [`Granularity::Pixel`].
     #[default]

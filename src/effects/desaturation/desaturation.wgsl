@@ -51,17 +51,17 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
     return 1.0 - mix(s.amount_near, s.amount, 1.0 - k);
 }
 
-// Mixes a colour with grey; `k` is the fraction of the saturation that remains. The
-// grey has the same luminance or, with the faithful equations, the same HSV value, which
-// makes colours brighter ([CS] Eq. 5).
+// Mixes a color with gray; `k` is the fraction of the saturation that remains. The
+// gray has the same luminance or, with the faithful equations, the same HSV value, which
+// makes colors brighter ([CS] Eq. 5).
 fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
     if is_faithful(s) {
         let c = srgb_encode(linear);
         let value = vec3(largest(c));
         return srgb_decode(value * (1.0 - k) + c * k);
     }
-    let grey = vec3(luminance(linear));
-    return grey * (1.0 - k) + linear * k;
+    let gray = vec3(luminance(linear));
+    return gray * (1.0 - k) + linear * k;
 }
 
 fn desaturation(s: Desaturation, p: Pixel) -> Pixel {

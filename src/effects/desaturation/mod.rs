@@ -12,8 +12,8 @@ use crate::{
     settings::{Equations, FieldRange},
 };
 
-/// Removes saturation with distance: the nearest geometry keeps its colours, the
-/// farthest geometry and the sky turn grey (\[CS\] Eq. 5 to 7).
+/// Removes saturation with distance: the nearest geometry keeps its colors, the
+/// farthest geometry and the sky turn gray (\[CS\] Eq. 5 to 7).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -27,7 +27,7 @@ pub struct Desaturation {
     #[reflect(@FieldRange::FRACTION)]
     pub amount_near: f32,
     /// Shapes the loss of saturation with distance: `(1 - D)` to the power of this
-    /// exponent remains. Below 1, colours last longer and are lost late. Range 0.25
+    /// exponent remains. Below 1, colors last longer and are lost late. Range 0.25
     /// to 4, default 1. Source: \[CS\] Eq. 6 (1) and Eq. 7 (0.5).
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,

@@ -41,7 +41,7 @@ struct Focus {
     // In physical pixels.
     radius: f32,
     // 1: the focus is at what the middle of the view shows.
-    at_centre: u32,
+    at_center: u32,
     // DOTS: where the screens begin in the render target, the size of their cells in physical
     // pixels, and how much of them is seen where all is out of focus.
     center: vec2<f32>,
@@ -97,7 +97,7 @@ fn nearness_at(s: Focus, pixel: vec2<i32>) -> f32 {
 
 // Distance of the focus.
 fn focus_distance(s: Focus) -> f32 {
-    if s.at_centre == 1u {
+    if s.at_center == 1u {
 #ifdef MIDDLE_DEPTH
         let near = nearness_of(s, middle_depth());
 #else
@@ -209,7 +209,7 @@ fn dots(s: Focus, place: vec2<f32>, turn: vec2<f32>, phase: f32, tone: f32) -> f
     return paler(euclidean(at, clamp(tone, LEAST, 1.0 - LEAST), s.cell_size), tone);
 }
 
-// A colour in dots of four ideal inks, at the angles of Halftone. `amount`: how much of the dots
+// A color in dots of four ideal inks, at the angles of Halftone. `amount`: how much of the dots
 // is seen; the rest is printed as plain tones, so that the mean stays.
 fn dotted(s: Focus, position: vec2<f32>, color: vec3<f32>, amount: f32) -> vec3<f32> {
     let shown = clamp(color, vec3(0.0), vec3(1.0));
@@ -226,7 +226,7 @@ fn dotted(s: Focus, position: vec2<f32>, color: vec3<f32>, amount: f32) -> vec3<
     return color - shown + plates.xyz * plates.w;
 }
 
-// The colour out of focus, not multiplied by the opacity. `own`: signed radius.
+// The color out of focus, not multiplied by the opacity. `own`: signed radius.
 fn out_of_focus(s: Focus, p: Pixel, own: f32) -> vec3<f32> {
     let pixel = vec2<i32>(p.position);
     let color = p.color / max(p.alpha, 1e-3);

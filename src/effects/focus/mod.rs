@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Puts one distance into focus: what is nearer or farther is blurred, painted, printed out of
-/// register or in dots, or loses its lines. Drawn after the effects of colour, before prints and
+/// register or in dots, or loses its lines. Drawn after the effects of color, before prints and
 /// lines.
 ///
 /// As in a comic, and unlike with a lens, the boundary between sharp and blurred areas stays sharp:
@@ -85,14 +85,14 @@ pub enum FocusStyle {
     /// Printed with red and blue apart along a diagonal, by up to twice the radius.
     Offset,
     /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes. Before a
-    /// background that varies as much as its outline, a sharp figure's colour may be in the paint
+    /// background that varies as much as its outline, a sharp figure's color may be in the paint
     /// beside it.
     Paint,
-    /// Printed in dots of four ideal inks, which keep the mean colour; between sharp and out of
+    /// Printed in dots of four ideal inks, which keep the mean color; between sharp and out of
     /// focus, plain tones become dots. Reads no other pixels. The view is styled after FXAA and
     /// SMAA. A [`Halftone`](crate::Halftone) of the camera prints over it.
     Dots,
-    /// Colours stay sharp; lines become thinner and fainter until they vanish. Lines of the
+    /// Colors stay sharp; lines become thinner and fainter until they vanish. Lines of the
     /// faithful equations do not. Needs compute shaders.
     Lines,
 }
@@ -192,7 +192,7 @@ impl Effect for Focus {
             clear: self.clear,
             steepness: 1.0 / self.ramp,
             radius: self.physical_radius(view),
-            at_centre: u32::from(self.at == FocusAt::Center),
+            at_center: u32::from(self.at == FocusAt::Center),
             center: middle.as_vec2() + 0.25,
             cell_size,
             amount: self.whole() * shown * shown * (3.0 - 2.0 * shown),
@@ -230,7 +230,7 @@ pub struct FocusUniform {
     clear: f32,
     steepness: f32,
     radius: f32,
-    at_centre: u32,
+    at_center: u32,
     center: Vec2,
     cell_size: f32,
     amount: f32,

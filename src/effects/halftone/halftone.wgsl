@@ -104,7 +104,7 @@ fn shape_of(s: Halftone) -> u32 {
 #endif
 }
 
-// Whether tones, levels or screens depend on more than the colour: compiled in, see `adjusts` in
+// Whether tones, levels or screens depend on more than the color: compiled in, see `adjusts` in
 // mod.rs.
 fn adjusts(s: Halftone) -> bool {
 #ifdef EFFECT_HALFTONE_ADJUSTED
@@ -125,7 +125,7 @@ fn spreads(s: Halftone) -> bool {
 #endif
 }
 
-// A colour in linear light: lightness from `solid_below` to `bare_above` is stretched to all of it.
+// A color in linear light: lightness from `solid_below` to `bare_above` is stretched to all of it.
 fn stretched(s: Halftone, color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3(0.0), vec3(1.0));
     if !adjusts(s) {
@@ -143,7 +143,7 @@ fn printed_tone(s: Halftone, tone: f32) -> f32 {
     return gained(tinted(t, s.tints), s.gain);
 }
 
-// Tones of the plates for a colour in linear light: cyan, magenta, yellow, black; in
+// Tones of the plates for a color in linear light: cyan, magenta, yellow, black; in
 // MODE_RGB of the lights red, green, blue.
 fn plate_tones(s: Halftone, color: vec3<f32>) -> vec4<f32> {
     let c = stretched(s, color);
@@ -273,7 +273,7 @@ fn screen_amount(s: Halftone, color: vec3<f32>, depth: f32) -> f32 {
     return mix(s.at_near, s.at_far, depth) * shade;
 }
 
-// The colour of inks on paper. `k`: coverage of each plate.
+// The color of inks on paper. `k`: coverage of each plate.
 fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
     if mode_of(s) == MODE_RGB {
         return k.xyz;
@@ -283,7 +283,7 @@ fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
 }
 
 #ifdef EFFECT_HALFTONE_CELLS
-// The mean colour of four places in the cell of a plate that a pixel lies in; `own` where
+// The mean color of four places in the cell of a plate that a pixel lies in; `own` where
 // the background shows through.
 fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
     let turn = plate_turn(s, on, plate);
@@ -341,7 +341,7 @@ fn followed(s: Halftone, p: Pixel) -> Similarity {
     if style.anchor_size > 0.0 {
         found = similarity_of(
             s.clip_from_world, vec4<f32>(view.viewport),
-            style.anchor_centre, style.anchor_size, style.anchor_rotation,
+            style.anchor_center, style.anchor_size, style.anchor_rotation,
         );
     }
 #endif

@@ -29,7 +29,7 @@ pub enum HalftoneMode {
 pub enum ScreenShape {
     /// Discs that grow until they overlap: Ben-Day dots.
     Round = 0,
-    /// Discs in the lights, a chequerboard in the middle tones, holes in the shadows.
+    /// Discs in the lights, a checkerboard in the middle tones, holes in the shadows.
     #[default]
     Euclidean = 1,
     /// Lines that grow wider.

@@ -18,12 +18,12 @@ use crate::{
     settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
-/// Prints the colours of the picture with screens of dots or lines: four-colour print,
+/// Prints the colors of the picture with screens of dots or lines: four-color print,
 /// screentone, Ben-Day dots.
 ///
 /// The picture is separated into plates, in linear light; each prints its tone as dots
 /// that cover that fraction of the area. With ideal inks on white paper, the mean of a
-/// flat area is its colour. Screens stand still on the page. Lines and areas of ink are
+/// flat area is its color. Screens stand still on the page. Lines and areas of ink are
 /// drawn over the print, and stay sharp. What is brighter than white is printed as white.
 ///
 /// Screens of less than 2.5 physical pixels fade into plain tones. The views of cameras
@@ -252,7 +252,7 @@ impl Halftone {
         self.sampling == ScreenSampling::Cell && self.shape != ScreenShape::Stochastic
     }
 
-    /// Whether tones, levels or screens depend on more than the colour.
+    /// Whether tones, levels or screens depend on more than the color.
     fn adjusts(&self) -> bool {
         let levels = self.solid_below > 0.0 || self.bare_above < 1.0;
         levels || self.tints > 0 || self.gain > 0.0 || self.shadows_only_below < 1.0

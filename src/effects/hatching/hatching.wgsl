@@ -58,11 +58,11 @@ fn surface_at(m: mat4x4<f32>, h: vec4<f32>, pixel: vec2<f32>, normal: vec3<f32>)
 
 // The surface in the frame of an object: the inverse of a rotation, given as a quaternion.
 #ifdef OBJECT_ANCHORS
-fn in_frame(on: Surface, centre: vec3<f32>, rotation: vec4<f32>) -> Surface {
+fn in_frame(on: Surface, center: vec3<f32>, rotation: vec4<f32>) -> Surface {
     let back = vec4(-rotation.xyz, rotation.w);
     var moved = on;
     moved.place = rotated(back, on.place);
-    moved.eye = rotated(back, on.eye - centre);
+    moved.eye = rotated(back, on.eye - center);
     moved.across = rotated(back, on.across);
     moved.down = rotated(back, on.down);
     moved.normal = rotated(back, on.normal);
@@ -73,21 +73,21 @@ fn in_frame(on: Surface, centre: vec3<f32>, rotation: vec4<f32>) -> Surface {
 }
 #endif
 
-// Whether a surface continues at a neighbour, from 1 to 0. `gap`: how far the neighbour is from where
+// Whether a surface continues at a neighbor, from 1 to 0. `gap`: how far the neighbor is from where
 // the surface would be, as a fraction of the largest distance of two strokes.
 fn continues(gap: f32) -> f32 {
     return 1.0 - smoothstep(0.15, 0.5, gap);
 }
 
-// How much of the strokes is left, from how many of four neighbours continue the surface. At the edge
+// How much of the strokes is left, from how many of four neighbors continue the surface. At the edge
 // of a large surface, two or three do.
-fn strokes_left(simplify_small: f32, neighbours: f32) -> f32 {
-    return 1.0 - simplify_small * (1.0 - smoothstep(0.75, 2.0, neighbours));
+fn strokes_left(simplify_small: f32, neighbors: f32) -> f32 {
+    return 1.0 - simplify_small * (1.0 - smoothstep(0.75, 2.0, neighbors));
 }
 
 #ifdef EFFECT_HATCHING_ON_THINGS
 #ifdef EFFECT_HATCHING_SIMPLIFY_SMALL
-// Whether the surface at a pixel, in world axes, continues at a neighbour.
+// Whether the surface at a pixel, in world axes, continues at a neighbor.
 fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
     let corner = view.viewport.xy;
     let pixel = clamp(vec2<i32>(floor(p.position)) + offset, corner, corner + view.viewport.zw - 1);
@@ -145,7 +145,7 @@ fn anchored(on: Surface, pixel: vec2<i32>) -> Surface {
     let object = load_object(pixel);
     let style = style_of(object.y);
     if style.anchor_size > 0.0 {
-        return in_frame(on, style.anchor_centre, style.anchor_rotation);
+        return in_frame(on, style.anchor_center, style.anchor_rotation);
     }
 #endif
     return on;

@@ -37,11 +37,11 @@ pub enum HatchingMarks {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum HatchingGround {
-    /// The colours of the picture, brighter under strokes, so that the mean of an area keeps its
-    /// colour as far as the display can show that.
+    /// The colors of the picture, brighter under strokes, so that the mean of an area keeps its
+    /// color as far as the display can show that.
     #[default]
     Color,
-    /// A sheet of one colour: [`Hatching::paper`](crate::Hatching::paper).
+    /// A sheet of one color: [`Hatching::paper`](crate::Hatching::paper).
     Paper,
 }
 
@@ -50,11 +50,11 @@ pub enum HatchingGround {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum HatchingSource {
-    /// The lightness of the picture, so dark colours are hatched as well as shadows.
+    /// The lightness of the picture, so dark colors are hatched as well as shadows.
     #[default]
     Picture,
     /// The direction in which a surface faces: lightness 1 towards the
-    /// [`KeyLight`](crate::KeyLight), a half beside it, 0 away from it. Colours and cast shadows
+    /// [`KeyLight`](crate::KeyLight), a half beside it, 0 away from it. Colors and cast shadows
     /// have no effect. With [`HatchingAnchor::Page`], the same as [`HatchingSource::Picture`].
     Facing,
 }

@@ -58,7 +58,7 @@ pub struct Hatching {
     /// Number of tones of the hatching, in equal steps. Range 0 (all tones) to 12, default 0.
     #[reflect(@FieldRange::linear(0.0, 12.0), @BlendField::Switch)]
     pub tones: u32,
-    /// Least distance of neighbouring strokes in logical pixels. It grows to twice this as the
+    /// Least distance of neighboring strokes in logical pixels. It grows to twice this as the
     /// camera comes nearer, while new strokes grow in between. Dots are this far apart at
     /// `layer_darkness`; they are three quarters of it wide by default. Range 2 to 24, default 4.
     #[reflect(@FieldRange::logarithmic(2.0, 24.0).unit("px"))]
@@ -85,7 +85,7 @@ pub struct Hatching {
     #[reflect(@FieldRange::FRACTION)]
     pub breaks: f32,
     /// How far strokes stray from their lines, and dots from their rows, as a fraction of the
-    /// distance at which they would meet their neighbours. Range 0 to 1, default 0.3.
+    /// distance at which they would meet their neighbors. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
     pub wobble: f32,
     /// How much the width of a stroke, or the area of a dot, varies. Range 0 to 1, default 0.3.
@@ -100,7 +100,7 @@ pub struct Hatching {
     /// at four more places. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub simplify_small: f32,
-    /// Colour of the strokes. Default: black. Components are clamped to what a display shows;
+    /// Color of the strokes. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
     #[serde(with = "color_serde")]
     pub ink: Color,

@@ -25,7 +25,7 @@ struct IsoLines {
     opacity: f32,
     // The point that distances are measured from.
     center: vec3<f32>,
-    // Difference of two neighbouring lines.
+    // Difference of two neighboring lines.
     step: f32,
     // Half the width of a line, and of every `major`-th, in physical pixels.
     half_width: f32,

@@ -28,7 +28,7 @@ use crate::{
 pub struct IsoLines {
     /// What is equal along a line. Default: [`IsoField::Height`].
     pub field: IsoField,
-    /// Difference of two neighbouring lines: world units, or a fraction of the depth map's
+    /// Difference of two neighboring lines: world units, or a fraction of the depth map's
     /// range. Range 0.001 to 1000, default 0.5.
     #[reflect(@FieldRange::logarithmic(1e-3, 1e3))]
     pub step: f32,
@@ -46,7 +46,7 @@ pub struct IsoLines {
     /// Width of the heavier lines in logical pixels. Range 0.5 to 16, default 2.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub major_width: f32,
-    /// Colour of the lines. Default: black. Components are clamped to what a display shows;
+    /// Color of the lines. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,

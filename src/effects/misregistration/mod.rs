@@ -13,12 +13,12 @@ use crate::{
     settings::FieldRange,
 };
 
-/// Prints the plates of cyan, magenta, yellow and black out of register: colours miss
+/// Prints the plates of cyan, magenta, yellow and black out of register: colors miss
 /// their outlines by a hair, as in cheap print.
 ///
-/// The colours of the picture are separated into four plates, each of which is moved. Lines
+/// The colors of the picture are separated into four plates, each of which is moved. Lines
 /// and areas of ink are drawn afterwards, in their places. Beside a
-/// [`Halftone`](crate::Halftone), the moved colours are screened. What is brighter than
+/// [`Halftone`](crate::Halftone), the moved colors are screened. What is brighter than
 /// white is printed as white. The effect draws the picture in two passes.
 ///
 /// Offsets are in logical pixels, to the right and down. Range of each component -32 to 32.
@@ -39,7 +39,7 @@ pub struct Misregistration {
     #[reflect(@FieldRange::linear(-32.0, 32.0).unit("px"))]
     pub black: Vec2,
     /// Fraction of the darkness that cyan, magenta and yellow share which is in the black
-    /// plate. Range 0 (greys have coloured edges) to 1 (greys are moved as one), default 0.7.
+    /// plate. Range 0 (grays have colored edges) to 1 (grays are moved as one), default 0.7.
     #[reflect(@FieldRange::FRACTION)]
     pub black_generation: f32,
     /// Largest additional random offset of the cyan, magenta and yellow plates, per axis, chosen

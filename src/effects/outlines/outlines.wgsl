@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::outlines
 
-// Draws the outlines that the lines service has found. Their colours and opacities
+// Draws the outlines that the lines service has found. Their colors and opacities
 // are settings of the service, since other effects draw the same lines.
 
 #import bevy_comics::effect::pixel::Pixel

@@ -12,12 +12,12 @@ use crate::{
     settings::FieldRange,
 };
 
-/// Paints the picture: areas become flat patches of one colour, their edges stay sharp, and
-/// detail that is finer than the brush is gone. Drawn after the effects of colour, before
+/// Paints the picture: areas become flat patches of one color, their edges stay sharp, and
+/// detail that is finer than the brush is gone. Drawn after the effects of color, before
 /// prints and lines, which stay as they are.
 ///
 /// Around each pixel lie eight overlapping areas. The pixel takes the mean of those whose
-/// lightness varies least (Kuwahara 1976), so no colour crosses an edge. Nothing is painted
+/// lightness varies least (Kuwahara 1976), so no color crosses an edge. Nothing is painted
 /// where the background of a transparent camera shows through.
 ///
 /// The brush is `at_near` wide at the near end of the depth map, and `at_far` wide at its far end.
@@ -39,7 +39,7 @@ pub struct Paint {
     /// (soft, as seen through frosted glass) to 16 (patches with hard borders), default 8.
     #[reflect(@FieldRange::linear(1.0, 16.0))]
     pub sharpness: f32,
-    /// Whether paint keeps to the outline of objects even where their colours are alike: an area
+    /// Whether paint keeps to the outline of objects even where their colors are alike: an area
     /// whose middle lies on another object has an eighth of the weight. Object ids are drawn; needs
     /// the crate's feature `objects`. Default: `false`.
     pub figures: bool,

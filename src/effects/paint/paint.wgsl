@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::paint
 
-// Kuwahara's filter: a pixel takes the mean colour of the areas around it whose luminance
+// Kuwahara's filter: a pixel takes the mean color of the areas around it whose luminance
 // varies least.
 //
 // Box form: a square of side r + 1 with its corner in the pixel is the box of that side in its
@@ -68,7 +68,7 @@ fn no_choice() -> Choice {
     return Choice(vec4(0.0), 1e30);
 }
 
-// The colour of the areas in linear light, if there are any.
+// The color of the areas in linear light, if there are any.
 fn chosen_color(c: Choice) -> vec3<f32> {
     let mean = c.sum.xyz / max(c.sum.w, 1e-37);
     return square(color_of(mean.x, mean.yz));

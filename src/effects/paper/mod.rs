@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Prints the picture on paper: its grain shows in the tones between bare paper and solid ink, its
-/// relief shades the page, and its colour tints it.
+/// relief shades the page, and its color tints it.
 ///
 /// The sheet is fixed to the render target, so that the views of a split screen are printed
 /// on one sheet, unless [`anchor`](Self::anchor) gives each its own. Grain, shading and
@@ -59,7 +59,7 @@ pub struct Paper {
     /// (almost nothing is left), default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub dry_brush: f32,
-    /// Colour of the sheet; the page is multiplied by it. Default: warm white. Components are
+    /// Color of the sheet; the page is multiplied by it. Default: warm white. Components are
     /// clamped to what a display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,

@@ -31,15 +31,15 @@ pub struct Sketch {
     /// effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Colour of the paper. Default: sRGB (0.97, 0.955, 0.915), a warm white.
+    /// Color of the paper. Default: sRGB (0.97, 0.955, 0.915), a warm white.
     /// Components are clamped to what a display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub paper: Color,
-    /// Colour of the ink. Default: sRGB (0.13, 0.12, 0.14), a soft black. Components
+    /// Color of the ink. Default: sRGB (0.13, 0.12, 0.14), a soft black. Components
     /// are clamped to what a display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub ink: Color,
-    /// How much the picture tints the paper, like a wash of colour. Range 0 to 1,
+    /// How much the picture tints the paper, like a wash of color. Range 0 to 1,
     /// default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub wash: f32,

@@ -47,7 +47,7 @@ fn add_stroke(inked: f32, stroke: f32) -> f32 {
 }
 
 // Draws ink on paper, in linear light. The paper is opaque; where there is no picture,
-// it is blank. `picture` is a colour multiplied by its opacity, and the opacity; `inked`
+// it is blank. `picture` is a color multiplied by its opacity, and the opacity; `inked`
 // is the coverage of the ink, 0 to 1.
 fn draw_sketch(s: Sketch, picture: vec4<f32>, inked: f32) -> vec3<f32> {
     let ground = mix(s.paper, s.paper * (picture.rgb + (1.0 - picture.a)), s.wash);

@@ -59,7 +59,7 @@ pub struct SpeedLines {
     /// Seed of the random lines. Default: 0.
     #[reflect(@FieldRange::linear(0.0, 65535.0), @BlendField::Switch)]
     pub seed: u32,
-    /// Colour of the lines. Default: black. Components are clamped to what a display shows;
+    /// Color of the lines. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,

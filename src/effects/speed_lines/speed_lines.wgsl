@@ -21,7 +21,7 @@ struct SpeedLines {
     hole: vec2<f32>,
     // Direction of parallel lines.
     axis: vec2<f32>,
-    // Distance from the centre at which lines are as wide as asked.
+    // Distance from the center at which lines are as wide as asked.
     far: f32,
     // Half the width of the widest lines.
     half_width: f32,
@@ -83,7 +83,7 @@ fn turn_of(d: vec2<f32>) -> f32 {
     return select(half, 1.0 - half, d.y > 0.0);
 }
 
-// Half the width of a line at a distance from the centre: it begins as a point at `inner`.
+// Half the width of a line at a distance from the center: it begins as a point at `inner`.
 // `random`: its random number. `cell`: distance of two lines there; lines are at most wide
 // enough to reach into the next cell but one.
 fn speed_line_half_width(s: SpeedLines, random: f32, at: f32, inner: f32, cell: f32) -> f32 {
@@ -107,13 +107,13 @@ fn dry_ink(s: SpeedLines, seed: u32, d: vec2<f32>) -> f32 {
 }
 
 // Coverage of one radial line. `u`: direction of the pixel in cells; `rho`: its distance
-// from the centre; `hole`: distance of the ellipse's border in that direction.
+// from the center; `hole`: distance of the ellipse's border in that direction.
 fn radial_line(s: SpeedLines, line: i32, u: f32, rho: f32, hole: f32) -> f32 {
     // Lines on both sides of the first direction are the first and the last one.
     let number = u32((line + s.count) % s.count);
     let own_hash = hash(number ^ hash(s.seed));
     let own = three(own_hash);
-    // Three neighbours are about as long.
+    // Three neighbors are about as long.
     let group = three(hash((number / 3u) ^ hash(~s.seed)));
     let inner = hole * (1.0 + 0.5 * own.y * (0.4 + 1.2 * group.x));
     let cell = TURN * rho / f32(s.count);
@@ -126,7 +126,7 @@ fn radial_line(s: SpeedLines, line: i32, u: f32, rho: f32, hole: f32) -> f32 {
 }
 
 // Coverage of one parallel line. `d`: place of the pixel along and across the lines, from
-// the centre.
+// the center.
 fn parallel_line(s: SpeedLines, line: i32, d: vec2<f32>) -> f32 {
     let own_hash = hash(bitcast<u32>(line) ^ hash(s.seed));
     let own = three(own_hash);

@@ -24,7 +24,7 @@ use crate::{
 pub struct ToneBands {
     /// Selects how tones are banded. [`Equations::Corrected`] moves the lightness (the
     /// square root of the luminance) to the middle of its band and keeps hue and
-    /// saturation. [`Equations::Faithful`] compresses each channel of the display colour
+    /// saturation. [`Equations::Faithful`] compresses each channel of the display color
     /// separately in three ranges; white becomes 0.83. Default: [`Equations::Corrected`].
     /// Source of the faithful equations: \[CL\] Eq. 6, without its gaps at 0.33 and 0.66.
     pub equations: Equations,

@@ -47,13 +47,13 @@ fn band_tone(s: ToneBands, y: f32, change: f32, splits: f32) -> f32 {
     return split_bands(s.levels, splits, y, s.softness * change);
 }
 
-// The colour with another luminance and the same chromaticity. If the display cannot
-// show it, it is mixed with grey of that luminance until it can.
+// The color with another luminance and the same chromaticity. If the display cannot
+// show it, it is mixed with gray of that luminance until it can.
 fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
     let y = luminance(linear);
-    let grey = vec3(target_luminance);
+    let gray = vec3(target_luminance);
     if y < 1e-6 {
-        return grey;
+        return gray;
     }
     let scaled = linear * (target_luminance / y);
     let over = largest(scaled) - 1.0;
@@ -61,7 +61,7 @@ fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
         return scaled;
     }
     let room = clamp((1.0 - target_luminance) / max(largest(scaled) - target_luminance, 1e-6), 0.0, 1.0);
-    return mix(grey, scaled, room);
+    return mix(gray, scaled, room);
 }
 
 fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32, splits: f32) -> vec3<f32> {

@@ -18,8 +18,8 @@ use crate::{
 /// (X-Toon: Barla, Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras
 /// whose scenes do not have a [`ToonMaterial`](crate::ToonMaterial).
 ///
-/// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Distant tones
-/// with soft edges and pale colours are an aerial perspective; equal distant tones are an
+/// Between near and far, edges move and soften, and colors are mixed in `OKLab`. Distant tones
+/// with soft edges and pale colors are an aerial perspective; equal distant tones are an
 /// abstraction.
 ///
 /// Bevy's cameras dither by default. On a flat area whose lightness is within 4/255 of a place
@@ -29,11 +29,11 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToneRamp {
-    /// Tone of what is dark, near. Default: a deep violet. Components of all colours are clamped
+    /// Tone of what is dark, near. Default: a deep violet. Components of all colors are clamped
     /// to what a display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub dark: Color,
-    /// Tone between dark and light, near. Default: a greyish violet.
+    /// Tone between dark and light, near. Default: a grayish violet.
     #[serde(with = "color_serde")]
     pub middle: Color,
     /// Tone of what is light, near. Default: white.
@@ -76,7 +76,7 @@ pub struct ToneRamp {
     /// Range 0.01 to 1, default 1.
     #[reflect(@FieldRange::linear(0.01, 1.0))]
     pub reach: f32,
-    /// How much of the colours of things is kept: the tones are multiplied by it. Range 0 (the
+    /// How much of the colors of things is kept: the tones are multiplied by it. Range 0 (the
     /// tones alone) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub keep_color: f32,

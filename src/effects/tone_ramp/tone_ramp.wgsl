@@ -57,7 +57,7 @@ fn ramp_tone(s: ToneRamp, y: f32, change: f32, detail: f32) -> vec3<f32> {
     return mix(below, mixed_tone(s.light, s.distant_light, detail), light);
 }
 
-// The picture in tones. Some of the colour of things is kept: that of their brightest light.
+// The picture in tones. Some of the color of things is kept: that of their brightest light.
 fn toned(s: ToneRamp, linear: vec3<f32>, change: f32, detail: f32) -> vec3<f32> {
     let tone = ramp_tone(s, lightness(linear), change, detail);
     let brightest = largest(linear);

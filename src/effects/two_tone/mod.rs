@@ -14,7 +14,7 @@ use crate::{
     settings::{FieldRange, color_serde, linear_rgb},
 };
 
-/// Paints the picture, lines included, with two colours: one where it is darker than a
+/// Paints the picture, lines included, with two colors: one where it is darker than a
 /// threshold, one where it is lighter. [`Impact`](crate::Impact) uses it for a few drawings.
 /// Flat areas at the threshold show the engine's dither as dots: add
 /// `DebandDither::Disabled` to the camera.
@@ -27,15 +27,15 @@ pub struct TwoTone {
     /// [`ToneBands`](crate::ToneBands).
     #[reflect(@FieldRange::FRACTION)]
     pub threshold: f32,
-    /// Colour where the picture is darker. Default: black. Components are clamped to what a
+    /// Color where the picture is darker. Default: black. Components are clamped to what a
     /// display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub dark: Color,
-    /// Colour where the picture is lighter. Default: white. Components are clamped to what a
+    /// Color where the picture is lighter. Default: white. Components are clamped to what a
     /// display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub light: Color,
-    /// Whether the two colours are exchanged. Default: `false`.
+    /// Whether the two colors are exchanged. Default: `false`.
     pub invert: bool,
     /// Width of the edge between the tones in logical pixels. Range 0 to 16, default 1.5.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
@@ -60,7 +60,7 @@ impl Default for TwoTone {
 }
 
 impl TwoTone {
-    /// The colour of ink over the tones: one of the two tones is exchanged as they are.
+    /// The color of ink over the tones: one of the two tones is exchanged as they are.
     pub(crate) fn shown(&self, ink: Color) -> Color {
         if self.invert && ink == self.dark {
             self.light

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::two_tone
 
-// Paints the picture with two colours, divided by lightness.
+// Paints the picture with two colors, divided by lightness.
 
 #import bevy_comics::effect::color::luminance
 #import bevy_comics::effect::pixel::Pixel

@@ -1,4 +1,4 @@
-//! Mixes a colour into the corners of the picture.
+//! Mixes a color into the corners of the picture.
 
 use bevy::{
     color::Color,
@@ -14,20 +14,20 @@ use crate::{
     settings::{FieldRange, color_serde, linear_rgb},
 };
 
-/// Mixes a colour into the picture towards the corners of the viewport, over lines
+/// Mixes a color into the picture towards the corners of the viewport, over lines
 /// too: a spotlight, an old film, the edge of a panel.
 ///
-/// Distances are fractions of the distance from the centre of the viewport to its
+/// Distances are fractions of the distance from the center of the viewport to its
 /// corners. The vignette is an ellipse with the viewport's aspect ratio.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Vignette {
-    /// How much of the colour is mixed in outside the ellipse. Range 0 (the effect is
-    /// left out) to 1 (the colour alone), default 0.6.
+    /// How much of the color is mixed in outside the ellipse. Range 0 (the effect is
+    /// left out) to 1 (the color alone), default 0.6.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Distance from the centre at which half of the amount is mixed in, as a
+    /// Distance from the center at which half of the amount is mixed in, as a
     /// fraction of the distance to the corners. Range 0 to 1, default 0.8.
     #[reflect(@FieldRange::FRACTION)]
     pub radius: f32,
@@ -35,7 +35,7 @@ pub struct Vignette {
     /// default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour that is mixed in. Default: black. Components are clamped to what a
+    /// Color that is mixed in. Default: black. Components are clamped to what a
     /// display shows; alpha is ignored.
     #[serde(with = "color_serde")]
     pub color: Color,

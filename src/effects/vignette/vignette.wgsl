@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::vignette
 
-// Mixes a colour into the corners of the picture.
+// Mixes a color into the corners of the picture.
 
 #import bevy_comics::effect::pixel::Pixel
 
@@ -9,17 +9,17 @@ struct Vignette {
     amount: f32,
     // 2 / size of the viewport in physical pixels.
     scale: vec2<f32>,
-    // Distances from the centre at which the colour begins and is complete, as
+    // Distances from the center at which the color begins and is complete, as
     // fractions of the distance to the corners.
     low: f32,
     high: f32,
 }
 
-// Fraction of the colour in the mix at a place, in physical pixels from the
+// Fraction of the color in the mix at a place, in physical pixels from the
 // viewport's top left corner.
 fn vignette_cover(s: Vignette, at: vec2<f32>) -> f32 {
-    let from_centre = at * s.scale - 1.0;
-    let distance = length(from_centre) / sqrt(2.0);
+    let from_center = at * s.scale - 1.0;
+    let distance = length(from_center) / sqrt(2.0);
     return s.amount * smoothstep(s.low, s.high, distance);
 }
 

@@ -56,7 +56,7 @@ struct Lines {
     // Responses from which cracks are certain: weaker ones only continue lines.
     silhouette_limit: f32,
     crease_limit: f32,
-    // Of lines in the colour of surfaces: factors of luminance and of the distance from grey.
+    // Of lines in the color of surfaces: factors of luminance and of the distance from gray.
     surface_darken: f32,
     surface_saturate: f32,
     // 1 where borders of sections that were found in all meshes count; otherwise 0.
@@ -159,9 +159,9 @@ fn component_response(v: ptr<function, array<vec4<f32>, 25>>, k: f32) -> f32 {
 }
 
 // The functions below compute four places at once: a vector holds the values of four
-// neighbouring columns, or of four unrelated places.
+// neighboring columns, or of four unrelated places.
 
-// The step between the raw depths of two neighbours (here, there), minus the steeper of
+// The step between the raw depths of two neighbors (here, there), minus the steeper of
 // the slopes that lead up to it and away from it. It is positive at an edge, and 0 or
 // less on a plane. A slope counts only if it persists over two pixels: a single step
 // next to this one is another edge, not a slope. `before_2`, `before` and `beyond`,
@@ -310,7 +310,7 @@ fn least_crease_bend(s: Lines) -> f32 {
     return s.bend * sqrt(squared / (1.0 - squared));
 }
 
-// A crack is the border between two neighbouring pixels: `here`, and `there` to the east
+// A crack is the border between two neighboring pixels: `here`, and `there` to the east
 // or south of it. It is packed into 32 bits:
 //   bits 0 to 2: a silhouette, a crease, an object edge runs along it; settled, see settle.wgsl, both
 //   a silhouette and a crease: a convex crease with a style of its own;
@@ -404,7 +404,7 @@ fn crack_opacity(s: Lines, packed: u32) -> f32 {
     return largest_opacity(s, ink_of(packed));
 }
 
-// The middle of the line near a crack, in pixels from the centre of the crack's pixel.
+// The middle of the line near a crack, in pixels from the center of the crack's pixel.
 // `across`: the unit vector from the pixel to the crack; `bend`: see line_bend in bend.wgsl;
 // `shifts`: see line_offset.
 fn line_middle(packed: u32, across: vec2<f32>, bend: vec2<f32>, shifts: bool) -> vec2<f32> {
@@ -429,7 +429,7 @@ fn middle_row(packed: u32) -> f32 {
     return f32(packed >> 16u) / 512.0 - 64.0;
 }
 
-// Packs the middle of a line into 32 bits: from the centre of a pixel, -2 to 2 pixels across
+// Packs the middle of a line into 32 bits: from the center of a pixel, -2 to 2 pixels across
 // and -64 to 64 down, in 512ths of a pixel (bits 0 to 10, and 16 to 31). `owner`: from that
 // pixel to the one that owns the line; across it is 0 or 1 (bit 11), and down it is stored from
 // the row of the middle (bits 12 to 14). `south`: the crack is to the south of its pixel (bit 15).
@@ -452,7 +452,7 @@ fn unpack_owner(packed: u32) -> vec2<i32> {
 
 // Distance from the middle of a line to the crack that it runs along, towards its
 // owner, in pixels. The middle of a line of even width is the crack. With an odd width
-// it is half a pixel further in, at the centre of the owner, so that the line covers
+// it is half a pixel further in, at the center of the owner, so that the line covers
 // whole pixels in both cases. In between, the distance is interpolated.
 fn line_offset(half_width: f32) -> f32 {
     let width = 2.0 * half_width;
@@ -478,7 +478,7 @@ fn decode_ink(stored: vec3<f32>) -> vec3<f32> {
 }
 
 // The fraction of a pixel that is covered by a line whose middle is at `distance` from
-// the pixel's centre. Exact for lines parallel to the pixel's sides.
+// the pixel's center. Exact for lines parallel to the pixel's sides.
 fn line_coverage(distance: f32, half_width: f32) -> f32 {
     return clamp(half_width + 0.5 - distance, 0.0, min(2.0 * half_width, 1.0));
 }

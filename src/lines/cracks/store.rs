@@ -65,7 +65,7 @@ pub struct ViewCracks {
     pub rect: UVec4,
     /// For each pixel the crack to the east, then that to the south; 0 for none. Bits 0 to
     /// 2: kinds (silhouette, crease, object edge; with an `EdgeStyle`, both of the first two are a
-    /// convex crease); bit 3: the line belongs to the pixel itself, not to its neighbour; bits 4
+    /// convex crease); bit 3: the line belongs to the pixel itself, not to its neighbor; bits 4
     /// to 11: ink; 12 to 19: opacity, both from 0 to 255; 20 to 31: half the width.
     pub words: Buffer,
     /// Where cracks are: words of 32 pixels of a column, bit 0 at the top. Eight planes, each

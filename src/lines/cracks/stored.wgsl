@@ -33,7 +33,7 @@ fn load_bends(g: Grid, p: vec2<i32>) -> u32 {
 #endif
 }
 
-// The middle of the line near a crack, in pixels from the centre of the crack's pixel.
+// The middle of the line near a crack, in pixels from the center of the crack's pixel.
 // `across`: the unit vector to the crack; `bend`: half of a word of load_bends.
 fn stored_middle(packed: u32, across: vec2<f32>, bend: u32) -> vec2<f32> {
 #ifdef VARIED

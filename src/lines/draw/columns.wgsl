@@ -1,4 +1,4 @@
-// The first half of the search for lines wider than the neighbouring pixels: for every
+// The first half of the search for lines wider than the neighboring pixels: for every
 // pixel, the crack in its column whose line covers it most, and of the others the one
 // whose line reaches farthest over it. The second half, in draw.wgsl, compares the results
 // of the columns nearby. Together they load 2 r pixels around a pixel instead of r^2.
@@ -19,7 +19,7 @@
 // with another middle.
 struct Best {
     packed: vec2<u32>,
-    // Middles of the lines, in pixels from the centre of the pixel.
+    // Middles of the lines, in pixels from the center of the pixel.
     first: vec2<f32>,
     second: vec2<f32>,
     // From the pixel to those that own them: across x and y, down z and w; and whether they are

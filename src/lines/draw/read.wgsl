@@ -43,7 +43,7 @@ fn line_owner(pixel: vec2<i32>) -> vec2<i32> {
 #ifdef SURFACE_LINES
 var<private> line_surface: vec3<f32>;
 
-// Sets the colour of the surface that the line at the pixel belongs to.
+// Sets the color of the surface that the line at the pixel belongs to.
 fn set_line_surface(color: vec3<f32>) {
     line_surface = color;
 }
@@ -52,7 +52,7 @@ fn set_line_surface(color: vec3<f32>) {
 #ifdef LAYER_INK
 var<private> line_ink: vec4<f32>;
 
-// Sets the colour that takes the place of part of that of the line at the pixel: multiplied by
+// Sets the color that takes the place of part of that of the line at the pixel: multiplied by
 // that part, and the part.
 fn set_line_ink(ink: vec4<f32>) {
     line_ink = ink;
@@ -100,7 +100,7 @@ fn lines_at(at: vec2<f32>) -> Found {
     found.sign = sign_at(vec2<i32>(floor(at)), found.ink.y);
 #endif
 #ifdef LINES_ANYWHERE
-    // Between the centres of pixels: bilinear.
+    // Between the centers of pixels: bilinear.
     let corner = floor(at - 0.5);
     let f = at - 0.5 - corner;
     let p = vec2<i32>(corner);
@@ -112,7 +112,7 @@ fn lines_at(at: vec2<f32>) -> Found {
 #endif
 }
 
-// The colour of lines of a kind that has `ink`, without those of their object and plane.
+// The color of lines of a kind that has `ink`, without those of their object and plane.
 fn kind_color(ink: vec3<f32>) -> vec3<f32> {
 #ifdef SURFACE_LINES
     if lines_drawn.surface_darken >= 0.0 {
@@ -122,7 +122,7 @@ fn kind_color(ink: vec3<f32>) -> vec3<f32> {
     return ink;
 }
 
-// The colour of creases of a sign.
+// The color of creases of a sign.
 fn crease_color(sign: i32) -> vec3<f32> {
     let otherwise = kind_color(lines_drawn.crease_color);
 #ifdef EDGE_STYLES
@@ -144,7 +144,7 @@ fn crease_color(sign: i32) -> vec3<f32> {
 #endif
 }
 
-// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else that of its kind, mixed
+// The color of a line: that of the OutlineStyle in `slot`, if it has one, else that of its kind, mixed
 // with that of its plane.
 fn own_color(slot: u32, of_kind: vec3<f32>) -> vec3<f32> {
     var color = of_kind;
@@ -161,7 +161,7 @@ fn own_color(slot: u32, of_kind: vec3<f32>) -> vec3<f32> {
 }
 
 // Draws the line of largest opacity over the picture ([CL] Eq. 5 takes the maximum): a
-// colour in linear light that is multiplied by its opacity, and the opacity. If opacities
+// color in linear light that is multiplied by its opacity, and the opacity. If opacities
 // differ by at most 0.01, a silhouette goes before an object edge, and an object edge
 // before a crease.
 fn draw_lines(picture: vec4<f32>, lines: Found) -> vec4<f32> {

@@ -81,9 +81,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let high = min(p + 1, last);
     let high_2 = min(p + 2, last);
     let high_3 = min(p + 3, last);
-    let centre = depth_at(origin, p.x, p.y);
+    let center = depth_at(origin, p.x, p.y);
     var at: Borders;
-    at.here = vec4(centre);
+    at.here = vec4(center);
     at.there = vec2(depth_at(origin, high.x, p.y), depth_at(origin, p.x, high.y)).xyxy;
     let before = vec2(depth_at(origin, low.x, p.y), depth_at(origin, p.x, low.y)).xyxy;
     let before_2 = vec2(depth_at(origin, low_2.x, p.y), depth_at(origin, p.x, low_2.y)).xyxy;
@@ -99,8 +99,8 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
 #endif
 #ifdef BENDS
     let south_east = depth_at(origin, high.x, high.y);
-    let across = bends(p.x, last.x, array(before_2.x, before.x, centre, at.there.x, beyond.x, beyond_2.x));
-    let down = bends(p.y, last.y, array(before_2.y, before.y, centre, at.there.y, beyond.y, beyond_2.y));
+    let across = bends(p.x, last.x, array(before_2.x, before.x, center, at.there.x, beyond.x, beyond_2.x));
+    let down = bends(p.y, last.y, array(before_2.y, before.y, center, at.there.y, beyond.y, beyond_2.y));
     // The third bends of these are not used.
     let across_south = bends(p.x, last.x, array(
         depth_at(origin, low_2.x, high.y), depth_at(origin, low.x, high.y), at.there.y,

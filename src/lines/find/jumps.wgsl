@@ -12,7 +12,7 @@ struct Jumps {
     radius: f32,
 }
 
-// Three neighbouring columns of a row: the columns west of four pixels, the pixels, and
+// Three neighboring columns of a row: the columns west of four pixels, the pixels, and
 // the columns east of them.
 struct Row {
     w: vec4<f32>,
@@ -24,9 +24,9 @@ struct Row {
 const LEAST_DEPTH: f32 = 1.1754944e-38;
 
 // Whether the depth map may jump at a pixel of raw depth `c`. `bend`: the largest second
-// difference of raw depth through it; `slope`: the largest difference to a neighbour.
+// difference of raw depth through it; `slope`: the largest difference to a neighbor.
 //
-// At distance r, a second difference is at most r^2 times the largest between neighbours.
+// At distance r, a second difference is at most r^2 times the largest between neighbors.
 // As a difference of D it is largest at the end of the window where D is steepest, which
 // is at most 2 r - 1 pixels away.
 fn departs(j: Jumps, c: f32, bend: f32, slope: f32) -> bool {
@@ -46,7 +46,7 @@ fn departs(j: Jumps, c: f32, bend: f32, slope: f32) -> bool {
     return !(step < j.least * BELOW);
 }
 
-// The same for four pixels. `across` and `along`: whether a pixel has neighbours to the
+// The same for four pixels. `across` and `along`: whether a pixel has neighbors to the
 // west and east, and to the north and south. Beside the sky there is always a jump.
 fn may_jump(j: Jumps, north: Row, here: Row, south: Row, across: vec4<f32>, along: f32) -> bool {
     let c = here.c;

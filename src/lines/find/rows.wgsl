@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::lines::rows
 
-// Walks down four neighbouring columns of the grid and keeps the last rows in registers.
+// Walks down four neighboring columns of the grid and keeps the last rows in registers.
 // On CPU adapters a texel costs far more to load than to compare. With depth, normals and
 // ids, a walk down 32 rows loads 6 texels a pixel, and one down 8 rows 8.5, instead of 21.
 
@@ -22,7 +22,7 @@
 #import bevy_comics::objects::texel_object
 #endif
 
-// Four columns and their neighbours, clamped to the grid.
+// Four columns and their neighbors, clamped to the grid.
 struct Columns {
     // Of the grid in the depth texture.
     origin: vec2<i32>,
@@ -73,7 +73,7 @@ struct Bends {
     east: f32,
 }
 
-// The borders between four pixels (here) and their neighbours (there). Without EXCESS
+// The borders between four pixels (here) and their neighbors (there). Without EXCESS
 // excesses are 0, without NORMALS folds are, without OBJECT_IDS objects,
 // slots and sections are (see texel_object). BOUNDS: for walk.wgsl, which does not ask what only excludes
 // cracks; `outdone`, `departs`, `ridge` and `rim` are
@@ -115,7 +115,7 @@ fn depth_at(c: Columns, x: i32, y: i32) -> f32 {
 }
 
 #ifdef BENDS
-// Whether a place has neighbours on both sides, as 0 or 1.
+// Whether a place has neighbors on both sides, as 0 or 1.
 fn is_inside(at: vec4<i32>, last: i32) -> vec4<f32> {
     return select(vec4(0.0), vec4(1.0), (at > vec4(0)) & (at < vec4(last)));
 }

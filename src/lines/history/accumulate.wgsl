@@ -36,12 +36,12 @@ struct Around {
 }
 
 // The depths around a pixel of the grid, some pixels apart.
-fn depths_around(centre: vec2<i32>) -> Around {
+fn depths_around(center: vec2<i32>) -> Around {
     let rect = line_pass.grid.rect;
     var around = Around(0.0, -1.0, vec2(0));
     for (var i = 0; i < 25; i++) {
         let offset = vec2(i % 5 - 2, i / 5 - 2);
-        let at = rect.xy + clamp(centre + line_pass.history.spacing * offset, vec2(0), rect.zw - 1);
+        let at = rect.xy + clamp(center + line_pass.history.spacing * offset, vec2(0), rect.zw - 1);
         let d = texel_depth(at, 0);
         let beside = max(abs(offset.x), abs(offset.y)) < 2;
         around.nearest = max(around.nearest, select(0.0, d, beside));
@@ -112,8 +112,8 @@ fn accumulate(@builtin(position) position: vec4<f32>) -> Accumulated {
         least = min(least, beside);
         most = max(most, beside);
     }
-    let centre = vec2<i32>(floor(position.xy * g.from_viewport.xy + g.from_viewport.zw));
-    let around = depths_around(centre);
+    let center = vec2<i32>(floor(position.xy * g.from_viewport.xy + g.from_viewport.zw));
+    let around = depths_around(center);
     let moved = textureLoad(motion_texture, around.pixel, 0).xy * vec2<f32>(size);
     let place = position.xy - moved;
     let seen = all(place >= vec2(0.0)) && all(place < vec2<f32>(size));

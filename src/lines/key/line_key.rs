@@ -107,8 +107,8 @@ bitflags! {
         /// How cracks near a pixel are searched, see [`Search`].
         const NEIGHBOURS = 1 << 51;
         const COLUMNS = 1 << 52;
-        /// The colour of lines depends on the surface that they belong to, or on the sign of creases;
-        /// and whether they take the colour a pixel inside of it, because its rim is mixed with others.
+        /// The color of lines depends on the surface that they belong to, or on the sign of creases;
+        /// and whether they take the color a pixel inside of it, because its rim is mixed with others.
         const SURFACE = 1 << 53;
         const INWARD = 1 << 54;
         /// Drawing must know the pixel that owns a line.
@@ -235,7 +235,7 @@ impl LineKey {
             (lines.gap_closing > 0, Self::BRIDGED),
             (lines.is_smooth(), Self::SMOOTH),
             (true, Self::BLOCKS),
-            (search == Search::Neighbours, Self::NEIGHBOURS),
+            (search == Search::Neighbors, Self::NEIGHBOURS),
             (search == Search::Columns, Self::COLUMNS),
             (request.needs_owners(), Self::SURFACE),
             (request.needs_owners() && multisampled, Self::INWARD),
@@ -377,7 +377,7 @@ impl LineKey {
             | self.when(Self::OWNERS, self & Self::BRIDGED)
     }
 
-    /// What drawing and strokes have of the colours of lines and their sheet.
+    /// What drawing and strokes have of the colors of lines and their sheet.
     fn for_ink(self) -> Self {
         let ink = Self::BOIL | Self::INK_BLEED | Self::STREAKS | Self::SURFACE | Self::INWARD;
         self & (ink | Self::EDGE_STYLES | Self::OBJECT_STYLES)

@@ -21,7 +21,7 @@ fn end_sign(sides: u32, single: bool) -> f32 {
     return select(f32(after) - f32(before), 0.0, both);
 }
 
-// Where the line along a crack leaves it: x, its offset from the crack's centre across the
+// Where the line along a crack leaves it: x, its offset from the crack's center across the
 // crack, -0.5 to 0.5 pixels; y, its slope, -1 to 1. `seen`: cracks of the run up to this one
 // and from this one on; `signs`: see end_sign.
 fn line_bend(seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
@@ -48,7 +48,7 @@ fn line_bend(seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
 }
 
 // The same along a diagonal run, in which cracks to the east and to the south take turns, with the
-// next runs on different sides of it. Its centres lie on a diagonal, sqrt(1/2) pixels apart, and the
+// next runs on different sides of it. Its centers lie on a diagonal, sqrt(1/2) pixels apart, and the
 // next runs are sqrt(1/2) pixels beside it: in these units, with the diagonal in place of the row,
 // the line goes from end to end as along any run. `sense`: 1 if the diagonal goes to the
 // south-east, -1 to the north-east; `side`: 1 or -1, as in end_sign, of the end behind the crack.

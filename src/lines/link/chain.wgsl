@@ -23,12 +23,12 @@ fn last_corner(crack: vec3<i32>) -> vec2<i32> {
     return crack.xy + 1;
 }
 
-// The unit vectors along a crack and across it, and its centre.
+// The unit vectors along a crack and across it, and its center.
 fn along_crack(crack: vec3<i32>) -> vec2<f32> {
     return select(vec2(0.0, 1.0), vec2(1.0, 0.0), crack.z == 1);
 }
 
-fn crack_centre(crack: vec3<i32>) -> vec2<f32> {
+fn crack_center(crack: vec3<i32>) -> vec2<f32> {
     return 0.5 * vec2<f32>(first_corner(crack) + last_corner(crack));
 }
 
@@ -74,7 +74,7 @@ fn cracks_to_end(g: Grid, crack: vec3<i32>, corner: vec2<i32>, most: i32) -> i32
 
 // The three cracks that a line goes on in behind a corner of a crack.
 struct Three {
-    // The sum of their centres, and the centre of the last.
+    // The sum of their centers, and the center of the last.
     sum: vec2<f32>,
     last: vec2<f32>,
     // Whether there are three.
@@ -92,11 +92,11 @@ fn next_three(g: Grid, crack: vec3<i32>, corner: vec2<i32>) -> Three {
         return Three(vec2(0.0), vec2(0.0), false);
     }
     let three = next_crack(g, two, other_corner(two, behind));
-    let last = crack_centre(three);
-    return Three(crack_centre(one) + crack_centre(two) + last, last, three.z >= 0);
+    let last = crack_center(three);
+    return Three(crack_center(one) + crack_center(two) + last, last, three.z >= 0);
 }
 
-// Where a line leaves a crack, from the mean of the centres of seven cracks in a row and
+// Where a line leaves a crack, from the mean of the centers of seven cracks in a row and
 // the direction from the first to the last of them: x offset, y slope, see line_bend in
 // bend.wgsl. `otherwise` if there are no seven, or if they run across the crack.
 fn mean_bend(g: Grid, crack: vec3<i32>, otherwise: vec2<f32>) -> vec2<f32> {
@@ -109,7 +109,7 @@ fn mean_bend(g: Grid, crack: vec3<i32>, otherwise: vec2<f32>) -> vec2<f32> {
     if !back.complete || !on.complete || abs(rise) >= 1.9 * abs(run) {
         return otherwise;
     }
-    let away = (back.sum + on.sum - 6.0 * crack_centre(crack)) / 7.0;
+    let away = (back.sum + on.sum - 6.0 * crack_center(crack)) / 7.0;
     let slope = rise / run;
     let offset = dot(away, across) - slope * dot(away, along);
     return select(otherwise, vec2(offset, slope), abs(offset) <= 0.49);

@@ -28,7 +28,7 @@ fn bend_at(at: vec2<i32>, step: vec2<i32>) -> f32 {
     return texel_depth(at - step, 0) - 2.0 * texel_depth(at, 0) + texel_depth(at + step, 0);
 }
 
-// Whether the edge between two neighbouring pixels is convex. Raw depth is affine over a plane on the
+// Whether the edge between two neighboring pixels is convex. Raw depth is affine over a plane on the
 // screen, and larger in front. Behind two planes that bound a solid, it is the smaller of both: it
 // bends down over a convex edge, and up over a concave one, whatever the direction of the edge. At the
 // steps of an edge that is nearly parallel to the crack's normal, it bends more along the crack. A

@@ -28,7 +28,7 @@ impl LineFade {
         LineFadeUniform {
             axis,
             distance: self.distance.unwrap_or(1.0).max(1e-9),
-            at_centre: u32::from(self.distance.is_none()),
+            at_center: u32::from(self.distance.is_none()),
             reference: reference.unwrap_or(0.0),
             clear: self.clear,
             steepness: 1.0 / self.ramp,
@@ -42,7 +42,7 @@ impl LineFade {
 pub(crate) struct LineFadeUniform {
     axis: Vec2,
     distance: f32,
-    at_centre: u32,
+    at_center: u32,
     reference: f32,
     clear: f32,
     steepness: f32,

@@ -11,7 +11,7 @@ struct LineFade {
     axis: vec2<f32>,
     // The distance at which lines are whole, unless it is that of the middle of the view.
     distance: f32,
-    at_centre: u32,
+    at_center: u32,
     // Orthographic views: the length that distances are measured in; 0 in perspective.
     reference: f32,
     clear: f32,
@@ -33,11 +33,11 @@ fn fade_coordinate(f: LineFade, raw: f32) -> f32 {
 // its surface and of the middle of the view.
 fn fade_factor(f: LineFade, raw: f32, middle: f32) -> f32 {
     var whole_at = fade_coordinate(f, middle);
-    if f.at_centre == 0u {
+    if f.at_center == 0u {
         whole_at = select(log(f.distance), f.distance / f.reference, f.reference > 0.0);
     }
     let sky = is_background(raw);
-    let looks_at_sky = f.at_centre == 1u && is_background(middle);
+    let looks_at_sky = f.at_center == 1u && is_background(middle);
     if sky || looks_at_sky {
         return select(1.0 - f.amount, 1.0, sky && looks_at_sky);
     }

@@ -6,16 +6,16 @@ use bevy::{
     render::render_resource::ShaderType,
 };
 
-/// Lines have another width, opacity and colour in near, middle and far.
+/// Lines have another width, opacity and color in near, middle and far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineLayers {
     /// Factors of the width of lines whose surface is near, in the middle, far: 0 to 1.
     pub widths: [f32; 3],
     /// The same of their opacity.
     pub opacities: [f32; 3],
-    /// Colours of lines whose surface is near, in the middle, far.
+    /// Colors of lines whose surface is near, in the middle, far.
     pub colors: [LinearRgba; 3],
-    /// How much of the colour of lines comes from `colors`: 0 to 1.
+    /// How much of the color of lines comes from `colors`: 0 to 1.
     pub color_amounts: [f32; 3],
     /// The depth map at the borders between near and middle, and between middle and far.
     pub borders: [f32; 2],
@@ -30,7 +30,7 @@ pub struct LineLayers {
 }
 
 impl LineLayers {
-    /// Whether lines have colours of their own somewhere.
+    /// Whether lines have colors of their own somewhere.
     pub(crate) fn has_colors(&self) -> bool {
         self.color_amounts != [0.0; 3]
     }

@@ -1,10 +1,10 @@
 #define_import_path bevy_comics::lines::layer_lines
 
-// The width, opacity and colour of lines in near, middle and far. Pure functions.
+// The width, opacity and color of lines in near, middle and far. Pure functions.
 
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct LineLayers {
-    // Colours in near, middle and far in linear light, multiplied by how much of the colour of a
+    // Colors in near, middle and far in linear light, multiplied by how much of the color of a
     // line they are, and that amount.
     near_ink: vec4<f32>,
     middle_ink: vec4<f32>,
@@ -27,7 +27,7 @@ fn layer_factors(p: LineLayers, w: vec3<f32>) -> vec2<f32> {
     return vec2(dot(p.widths, w), dot(p.opacities, w));
 }
 
-// The colour, multiplied by its amount, and the amount, with these fractions of the layers.
+// The color, multiplied by its amount, and the amount, with these fractions of the layers.
 fn layer_ink(p: LineLayers, w: vec3<f32>) -> vec4<f32> {
     return w.x * p.near_ink + w.y * p.middle_ink + w.z * p.far_ink;
 }

@@ -24,7 +24,7 @@ pub(crate) use simplification::LineSimplificationUniform;
 pub struct LineModifiers {
     /// The distance at which lines are whole; farther from it they fade. Default: none.
     pub fade: Option<LineFade>,
-    /// Width, opacity and colour of lines in foreground, middle and background. Default: none.
+    /// Width, opacity and color of lines in foreground, middle and background. Default: none.
     pub layers: Option<LineLayers>,
     /// How lines are simplified by the depth map. Default: not.
     pub simplification: Option<LineSimplification>,

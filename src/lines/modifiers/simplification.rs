@@ -16,7 +16,7 @@ pub struct LineSimplification {
     pub threshold: f32,
     /// Factor of the opacity of creases at full simplification.
     pub crease_opacity: f32,
-    /// Lines of an object follow its centre and its
+    /// Lines of an object follow its center and its
     /// [`ObjectSimplification`](crate::objects::ObjectSimplification), see
     /// [`Needs::OBJECT_DEPTHS`](crate::effect::Needs::OBJECT_DEPTHS), which the effect must need.
     pub by_objects: bool,

@@ -8,7 +8,7 @@
 // Ink of the layer, see draw.wgsl.
 @group(0) @binding(4) var ink_texture: texture_2d<f32>;
 
-// A colour of linear light as the picture stores it.
+// A color of linear light as the picture stores it.
 fn to_stored(color: vec3<f32>) -> vec3<f32> {
 #ifdef STORED_SRGB
     return srgb_encode(color);

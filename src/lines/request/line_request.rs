@@ -28,7 +28,7 @@ const LINK_STEPS: usize = 8;
 pub(crate) enum Search {
     /// One pixel around it, without a loop.
     #[default]
-    Neighbours,
+    Neighbors,
     /// All pixels within reach.
     Around,
     /// The best crack of each column within reach, see `columns.wgsl`.
@@ -126,7 +126,7 @@ impl LineRequest {
         self.ids && self.simplification.is_some_and(by_objects)
     }
 
-    /// Whether the pixels that own lines are drawn, and which creases are convex, for the colour of
+    /// Whether the pixels that own lines are drawn, and which creases are convex, for the color of
     /// lines.
     pub fn needs_owners(&self) -> bool {
         let own_colors = |layers: LineLayers| layers.has_colors();
@@ -155,7 +155,7 @@ impl LineRequest {
         let reach = self.reach as f32 * self.view.depth_scale.min_element();
         let hard = self.settings.edge == LineEdge::Hard;
         if self.grid_reach() == 1 && !hard {
-            Search::Neighbours
+            Search::Neighbors
         } else if reach < 2.0 || hard {
             Search::Around
         } else {
@@ -167,7 +167,7 @@ impl LineRequest {
         let scale = self.view.depth_scale;
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
         // In columns, and where lines leave their cracks, cracks half a pixel further away count.
-        let beyond = self.settings.is_smooth() && self.search() != Search::Neighbours;
+        let beyond = self.settings.is_smooth() && self.search() != Search::Neighbors;
         let reach = self.grid_reach() + i32::from(beyond);
         let read = self.line_reach + self.boil.amplitude;
         let read = (read * scale.max_element() + self.extension).ceil() as i32;

@@ -1,27 +1,27 @@
-//! Where the colour of lines comes from.
+//! Where the color of lines comes from.
 
 use bevy::reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, NotFinite, impl_sanitized};
 
-/// Where the colour of lines comes from. Objects whose `OutlineStyle` has a colour keep that.
+/// Where the color of lines comes from. Objects whose `OutlineStyle` has a color keep that.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 pub enum LineColor {
-    /// The kinds of line have colours of their own: [`Silhouettes::color`] and the others.
+    /// The kinds of line have colors of their own: [`Silhouettes::color`] and the others.
     ///
     /// [`Silhouettes::color`]: crate::lines::Silhouettes::color
     #[default]
     Ink,
-    /// The surface that a line belongs to, after the effects that change colours (a "colour
-    /// hold" of cel animation). Faithful lines take the colour below them. In
+    /// The surface that a line belongs to, after the effects that change colors (a "color
+    /// hold" of cel animation). Faithful lines take the color below them. In
     /// multisampled views, a few pixels of slanted lines mix in what lies behind.
     Surface {
         /// Factor of the luminance. Range 0 (black) to 1, 0.35 if it is not finite.
         #[reflect(@FieldRange::FRACTION, @NotFinite(0.35))]
         darken: f32,
-        /// Factor of the distance from grey. Range 0 (grey) to 2, 1.2 if it is not finite.
+        /// Factor of the distance from gray. Range 0 (gray) to 2, 1.2 if it is not finite.
         #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.2))]
         saturate: f32,
     },
@@ -34,12 +34,12 @@ impl LineColor {
         saturate: 1.2,
     };
 
-    /// Whether lines have the colour of surfaces.
+    /// Whether lines have the color of surfaces.
     pub(crate) fn is_surface(self) -> bool {
         matches!(self, Self::Surface { .. })
     }
 
-    /// The factors of luminance, negative for ink, and of the distance from grey.
+    /// The factors of luminance, negative for ink, and of the distance from gray.
     pub(crate) fn factors(self) -> [f32; 2] {
         match self {
             Self::Ink => [-1.0, 1.0],

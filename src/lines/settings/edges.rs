@@ -13,7 +13,7 @@ use crate::settings::{
 };
 
 /// How convex or concave creases are drawn: [`Creases::convex`] or [`Creases::concave`]. The
-/// default is a highlight: the colour of the surface, lightened.
+/// default is a highlight: the color of the surface, lightened.
 ///
 /// An edge is convex where the surface bends away from the camera, as at the edges of a box, and
 /// where a part stands in front of another one. It is concave where the surface bends towards the
@@ -29,7 +29,7 @@ use crate::settings::{
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EdgeStyle {
-    /// Colour of the lines. Default: [`EdgeColor::HIGHLIGHT`].
+    /// Color of the lines. Default: [`EdgeColor::HIGHLIGHT`].
     #[reflect(@BlendField::Fields)]
     pub color: EdgeColor,
     /// Width of the lines, as a multiple of the others'. Range 0 to 4, default 1.
@@ -74,7 +74,7 @@ impl EdgeStyle {
 }
 
 impl EdgeStyle {
-    /// Between two styles; without one, creases have a colour in full.
+    /// Between two styles; without one, creases have a color in full.
     pub(super) fn between(
         a: Option<Self>,
         b: Option<Self>,
@@ -110,18 +110,18 @@ impl Blend for EdgeStyle {
     }
 }
 
-/// Where the colour of convex or concave creases comes from. Objects whose `OutlineStyle` has a colour
+/// Where the color of convex or concave creases comes from. Objects whose `OutlineStyle` has a color
 /// keep that.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 pub enum EdgeColor {
-    /// A colour of their own.
+    /// A color of their own.
     Ink {
-        /// The colour, clamped to what a display shows; its alpha is not used.
+        /// The color, clamped to what a display shows; its alpha is not used.
         #[serde(with = "color_serde")]
         color: Color,
     },
-    /// The surface that the line belongs to, after the effects that change colours. So it is darker
+    /// The surface that the line belongs to, after the effects that change colors. So it is darker
     /// in shadow, whatever casts it. In multisampled views, a few pixels of slanted lines mix in what
     /// lies behind.
     Surface {
@@ -129,7 +129,7 @@ pub enum EdgeColor {
         /// of the chroma; -1 is black. Range -1 to 1, 0.35 if it is not finite.
         #[reflect(@FieldRange::linear(-1.0, 1.0), @NotFinite(0.35))]
         lighten: f32,
-        /// Factor of the chroma in Oklab. Range 0 (grey) to 2, 1 if it is not finite.
+        /// Factor of the chroma in Oklab. Range 0 (gray) to 2, 1 if it is not finite.
         #[reflect(@FieldRange::linear(0.0, 2.0), @NotFinite(1.0))]
         saturate: f32,
     },
@@ -142,7 +142,7 @@ impl EdgeColor {
         saturate: 1.0,
     };
 
-    /// Whether the colour depends on the surface below.
+    /// Whether the color depends on the surface below.
     pub(crate) fn is_surface(self) -> bool {
         matches!(self, Self::Surface { .. })
     }

@@ -77,7 +77,7 @@ pub(crate) struct ViewFog {
     pub falloff: u32,
     /// Linear: start and end; exponential: density; atmospheric: extinction by channel.
     pub numbers: Vec3,
-    /// Opacity of its colour.
+    /// Opacity of its color.
     pub most: f32,
 }
 

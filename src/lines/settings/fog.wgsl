@@ -15,7 +15,7 @@ struct Fog {
     falloff: u32,
     // Linear: start and end; exponential: density; atmospheric: extinction by channel.
     numbers: vec3<f32>,
-    // The largest fraction: the opacity of the fog's colour.
+    // The largest fraction: the opacity of the fog's color.
     most: f32,
 }
 
@@ -29,7 +29,7 @@ fn fog_distance(f: Fog, position: vec2<f32>, d: f32) -> f32 {
     return f.axis.x / (d + f.axis.y) * length(vec3(across, 1.0));
 }
 
-// The fraction of a colour at a distance that the fog replaces. Of atmospheric fog, the mean
+// The fraction of a color at a distance that the fog replaces. Of atmospheric fog, the mean
 // over the channels.
 fn fog_fraction(f: Fog, distance: f32) -> f32 {
     if !(distance < 1e30) {

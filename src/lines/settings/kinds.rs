@@ -45,7 +45,7 @@ pub struct Silhouettes {
     /// a sketch. Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Color of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
     #[serde(with = "color_serde")]
     pub color: Color,
@@ -114,7 +114,7 @@ pub struct Creases {
     /// Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Color of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
     #[serde(with = "color_serde")]
     pub color: Color,
@@ -200,7 +200,7 @@ impl Default for Creases {
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectEdges {
-    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Color of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
     #[serde(with = "color_serde")]
     pub color: Color,

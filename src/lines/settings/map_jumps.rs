@@ -1,7 +1,7 @@
 //! Places besides lines that are inked.
 
 /// Places where the depth map D departs from planes. At other places, every two opposite
-/// neighbours at the same distance, at most `radius`, have D less than `least` away from
+/// neighbors at the same distance, at most `radius`, have D less than `least` away from
 /// a plane through the pixel between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapJumps {

@@ -113,7 +113,7 @@ pub struct Outlines {
     /// [`LineBoil::STILL`].
     #[reflect(@BlendField::Fields)]
     pub boil: LineBoil,
-    /// Where the colour of lines comes from. Default: [`LineColor::Ink`].
+    /// Where the color of lines comes from. Default: [`LineColor::Ink`].
     #[reflect(@BlendField::Fields)]
     pub color: LineColor,
     /// Weight of the previous frames under temporal anti-aliasing, whose jitter lines would
@@ -170,7 +170,7 @@ impl Outlines {
         ..Self::NONE
     };
 
-    /// Lines of pixel art: black pixels on one side of each edge, without greys, for a camera with
+    /// Lines of pixel art: black pixels on one side of each edge, without grays, for a camera with
     /// `Msaa::Off` that draws to a small image.
     pub const PIXELS: Self = Self {
         silhouettes: Some(Silhouettes {
@@ -326,7 +326,7 @@ impl Outlines {
             .is_some_and(|creases| creases.edge_styles().any(lit))
     }
 
-    /// Whether the colour of some lines is that of the surface that they belong to.
+    /// Whether the color of some lines is that of the surface that they belong to.
     pub(crate) fn has_surface_colors(&self) -> bool {
         let edge = |style: EdgeStyle| style.color.is_surface();
         self.color.is_surface()

@@ -61,7 +61,7 @@ pub struct LineWeight {
     /// a round pen. Needs `smooth` lines. Range 0.1 to 1, default 1.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
     pub nib_roundness: f32,
-    /// Direction of the edge of the nib, anticlockwise from a horizontal line in the
+    /// Direction of the edge of the nib, counterclockwise from a horizontal line in the
     /// picture, in degrees. Range 0 to 180, default 40.
     #[reflect(@FieldRange::linear(0.0, 180.0).unit("°"))]
     pub nib_angle: f32,

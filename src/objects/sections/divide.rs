@@ -10,7 +10,7 @@ use super::{ATTRIBUTE_MESH_SECTION, Origin};
 
 /// A section whose borders and bends have no creases.
 pub(super) const SILENT: u8 = 255;
-/// Numbers of sections, from 1 on. Neighbours have different numbers.
+/// Numbers of sections, from 1 on. Neighbors have different numbers.
 pub(super) const NUMBERS: u8 = 127;
 /// Numbers of sections that were [found](Origin::Found), from 1 on: pixels must confirm their
 /// borders. Those that were asked for have the others.
@@ -332,9 +332,9 @@ impl Parts {
     }
 }
 
-/// Gives each part a number of a range, which is 1 less than the number, that its neighbours do not
+/// Gives each part a number of a range, which is 1 less than the number, that its neighbors do not
 /// have, if there is one. `roots`: the first triangle of the part of each triangle; `apart`: pairs
-/// of neighbours; `near`: pairs that should differ if that is possible too.
+/// of neighbors; `near`: pairs that should differ if that is possible too.
 fn number(
     roots: &[usize],
     apart: &[[usize; 2]],

@@ -99,7 +99,7 @@ impl SpecializedMeshPipeline for TransparentSpecializer {
     }
 }
 
-/// Formats of the colour targets; `None`: it is not written.
+/// Formats of the color targets; `None`: it is not written.
 fn formats(targets: QueuedDepth) -> [Option<TextureFormat>; 2] {
     [
         targets.ids.then_some(ID_FORMAT),

@@ -43,7 +43,7 @@ pub(super) use items::TransparentItems;
 /// Lets a transparent mesh take part in lines and effects: it writes its depth, its normal and
 /// its [id](crate::testing::ObjectIds) for the effects of this crate.
 ///
-/// Then it has outlines of its own, hides the lines of what is behind it, and the colour
+/// Then it has outlines of its own, hides the lines of what is behind it, and the color
 /// effects use its own distance. The engine's depth and its picture do not change: what is
 /// behind glass stays visible through it.
 ///
@@ -65,8 +65,8 @@ pub(super) use items::TransparentItems;
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct DepthWrite {
-    /// The least alpha of a pixel that is written: the alpha of the base colour, times that of
-    /// its texture, times that of the vertex colours. Range 0.01 to 1, default 0.5. A number
+    /// The least alpha of a pixel that is written: the alpha of the base color, times that of
+    /// its texture, times that of the vertex colors. Range 0.01 to 1, default 0.5. A number
     /// that is not finite becomes the default.
     #[reflect(@FieldRange::linear(0.01, 1.0))]
     pub alpha_cutoff: f32,

@@ -30,7 +30,7 @@ fn material_of(instance: u32) -> pbr_types::StandardMaterial {
 }
 
 #ifdef VERTEX_UVS
-// Alpha of the base colour texture.
+// Alpha of the base color texture.
 fn texture_alpha(at: vec2<f32>, instance: u32) -> f32 {
 #ifdef BINDLESS
     let slot = mesh[instance].material_and_lightmap_bind_group_slot & 0xffffu;
@@ -47,7 +47,7 @@ fn texture_alpha(at: vec2<f32>, instance: u32) -> f32 {
 #endif
 }
 
-// The coordinates of the base colour texture, without the transform of the material.
+// The coordinates of the base color texture, without the transform of the material.
 fn base_uv(in: VertexOutput) -> vec2<f32> {
 #ifdef VERTEX_UVS_B
 #ifdef STANDARD_MATERIAL_BASE_COLOR_UV_B

@@ -19,7 +19,7 @@ fn view(effect: &dyn AnyEffect) -> &dyn PartialReflect {
     effect.as_struct().as_partial_reflect()
 }
 
-/// Between each default and other numbers and colours, each field is what its attributes say.
+/// Between each default and other numbers and colors, each field is what its attributes say.
 #[test]
 fn every_number_of_an_effect_is_blended_as_its_field_says() {
     for effect in EffectRegistry::built_in().types() {
@@ -39,7 +39,7 @@ fn every_number_of_an_effect_is_blended_as_its_field_says() {
     }
 }
 
-/// Changes a number, unless that would be another mode, or a colour.
+/// Changes a number, unless that would be another mode, or a color.
 fn change(place: &Place, root: &mut dyn PartialReflect) {
     let field = place.get_mut(root);
     if is_color(field) {
@@ -83,7 +83,7 @@ fn assert_between(
         } else {
             a + (b - a) * t
         };
-        // Mixtures of colours are clamped to what a display shows.
+        // Mixtures of colors are clamped to what a display shows.
         let tolerance = if is_mixture {
             0.02
         } else {

@@ -100,7 +100,7 @@ fn every_number_of_materials_and_components_is_clamped_to_its_range() {
 }
 
 impl<T: Clone + PartialEq + Debug> Access<T> {
-    /// Checks every number and colour of a default, and of the default with every other variant of
+    /// Checks every number and color of a default, and of the default with every other variant of
     /// its enums and options. Returns the number of numbers.
     fn check(&self, name: &str, default: T) -> usize {
         let mut todo = vec![(default, Place::root(name))];
@@ -175,7 +175,7 @@ impl<T: Clone + PartialEq + Debug> Access<T> {
         let after = |color: Color| {
             let used = (self.used)(self.with(value, place, &color));
             let color = place.get((self.view)(&used)).try_downcast_ref::<Color>();
-            *color.expect("a colour")
+            *color.expect("a color")
         };
         let inside = Color::linear_rgb(0.25, 0.5, 0.75);
         assert_eq!(after(inside), inside, "{}", place.name);

@@ -85,7 +85,7 @@ impl Numbers {
 }
 
 /// Gives all numbers, flags and modes of a value odd ones, options any or none, and lists of structs
-/// any length. Colours keep their space.
+/// any length. Colors keep their space.
 pub(crate) fn scramble(value: &mut dyn PartialReflect, numbers: &mut Numbers) {
     if let Some(x) = value.try_downcast_mut::<f32>() {
         *x = numbers.float();

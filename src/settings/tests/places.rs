@@ -54,7 +54,7 @@ impl Place {
         self.attributes?.get().copied()
     }
 
-    /// All fields below, without the parts of vectors and colours.
+    /// All fields below, without the parts of vectors and colors.
     pub fn all_below(&self, root: &dyn PartialReflect) -> Vec<Self> {
         let value = self.get(root);
         let mut found = Vec::new();

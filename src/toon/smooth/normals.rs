@@ -80,8 +80,8 @@ impl Faces {
 
     /// Normals of unit length, one for each vertex. Vertices at one place are one vertex. It starts
     /// with the mean of the normals of the triangles around it, weighted by their angles there. In
-    /// each round the normals of its neighbours are added to it, with weights whose mean is 1: they
-    /// are mean value coordinates (Floater 2003), so that the middle of the neighbours is where the
+    /// each round the normals of its neighbors are added to it, with weights whose mean is 1: they
+    /// are mean value coordinates (Floater 2003), so that the middle of the neighbors is where the
     /// vertex is, however an area is divided into triangles. A ball keeps its normals.
     ///
     /// Where the mean is undecided, as where two sides of a leaf meet, and where a vertex has no
@@ -151,7 +151,7 @@ fn near(
 struct Fan {
     /// Mean normals of the triangles, of unit length, or 0.
     normals: Vec<DVec3>,
-    /// Pairs of neighbours, each in both orders, sorted, and the weight of the second one.
+    /// Pairs of neighbors, each in both orders, sorted, and the weight of the second one.
     edges: Vec<([u32; 2], f64)>,
 }
 
@@ -219,7 +219,7 @@ impl Fan {
     }
 }
 
-/// One edge for each pair of neighbours, with weights whose mean is 1 at each of `count` places.
+/// One edge for each pair of neighbors, with weights whose mean is 1 at each of `count` places.
 fn evened(mut edges: Vec<([u32; 2], f64)>, count: usize) -> Vec<([u32; 2], f64)> {
     edges.sort_by_key(|(pair, _)| *pair);
     edges.dedup_by(|next, kept| {
@@ -229,13 +229,13 @@ fn evened(mut edges: Vec<([u32; 2], f64)>, count: usize) -> Vec<([u32; 2], f64)>
     });
     let mut sums = vec![(0.0, 0.0); count];
     for ([here, _], weight) in &edges {
-        let (sum, neighbours) = &mut sums[*here as usize];
+        let (sum, neighbors) = &mut sums[*here as usize];
         *sum += *weight;
-        *neighbours += 1.0;
+        *neighbors += 1.0;
     }
     for ([here, _], weight) in &mut edges {
-        let (sum, neighbours) = sums[*here as usize];
-        *weight *= neighbours / sum;
+        let (sum, neighbors) = sums[*here as usize];
+        *weight *= neighbors / sum;
     }
     edges
 }

@@ -71,7 +71,7 @@ const KINDS: [Kind; 8] = [
     kind!(
         "nonsense",
         Needs::empty(),
-        "fn nonsense(p: Pixel) -> Pixel { return p.colour; }"
+        "fn nonsense(p: Pixel) -> Pixel { return p.color; }"
     ),
     kind!(
         "nameless",

@@ -1,4 +1,4 @@
-//! Invalid settings, invalid colours, missing depth.
+//! Invalid settings, invalid colors, missing depth.
 
 use bevy_comics::ComicsSystems;
 
@@ -135,7 +135,7 @@ fn absurd_settings_equal_their_sanitized_selves() {
 }
 
 #[test]
-fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
+fn non_finite_colors_stay_finite_and_spread_to_no_other_pixel() {
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(Hdr);
     small.style(&full_style()).settle();

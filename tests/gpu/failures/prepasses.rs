@@ -55,8 +55,8 @@ fn a_style_keeps_its_prepass_until_the_next_one_is_compiled() {
     let mut small = in_background();
     let bare = still(&mut small);
     small.insert(Desaturation::default());
-    let grey = still(&mut small);
-    assert_ne!(grey, bare);
+    let gray = still(&mut small);
+    assert_ne!(gray, bare);
     remove::<Desaturation>(&mut small);
     small.insert(Colorization {
         amount: 0.9,
@@ -67,14 +67,14 @@ fn a_style_keeps_its_prepass_until_the_next_one_is_compiled() {
         step(&mut small);
         let picture = small.picture();
         assert_ne!(picture, bare, "the bare picture after {waited} frames");
-        if picture != grey {
+        if picture != gray {
             break;
         }
         waited += 1;
     }
     assert!(waited > 0, "there was nothing to wait for");
     let sepia = still(&mut small);
-    assert_ne!(sepia, grey);
+    assert_ne!(sepia, gray);
     assert!(!small.has::<DepthPrepass>(), "nothing reads depth any more");
     assert_eq!(small.errors(), 0);
 }

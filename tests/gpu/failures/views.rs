@@ -19,11 +19,11 @@ fn a_multisampled_camera_is_styled() {
 }
 
 #[test]
-fn hdr_can_be_toggled_and_a_target_may_store_linear_colour() {
+fn hdr_can_be_toggled_and_a_target_may_store_linear_color() {
     let mut small = styled(Msaa::Off);
     let ldr = small.picture();
     small.insert(Hdr).settle();
-    // Without tonemapping the two cameras show the same colours.
+    // Without tonemapping the two cameras show the same colors.
     assert!(changed(&ldr, &small.picture()) < 0.01);
     let camera = small.camera;
     small.world().entity_mut(camera).remove::<Hdr>();

@@ -222,13 +222,13 @@ impl Scene {
         let extreme = |pick: fn(f64, f64) -> f64| {
             [0, 1, 2].map(|k| nearby.iter().map(|ink| ink[k]).reduce(pick).expect("nine"))
         };
-        let centre = [0, 1].map(|k| {
+        let center = [0, 1].map(|k| {
             let place = (at[k] as f64 + 0.5) * self.scale[k] + [-0.25, 0.25][k];
             place.floor() as i64
         });
         // Surfaces are in the order of their depths.
         let nearest = |reach: i64| {
-            let around = square(centre, reach, self.spacing);
+            let around = square(center, reach, self.spacing);
             around.map(|at| self.surface(at)).max().expect("nine")
         };
         let moved = self.motions[nearest(2)].map(f64::from);

@@ -4,7 +4,7 @@
 
 use bevy_comics_testkit::{reference::link::bend, straight_edges};
 
-/// Root mean squares of the distances of the middles of lines, and of the centres of cracks, from
+/// Root mean squares of the distances of the middles of lines, and of the centers of cracks, from
 /// edges of one slope, in pixels.
 fn distances(slope: f64, offsets: [f64; 16]) -> [f64; 2] {
     let mut squares = [0.0; 2];

@@ -5,7 +5,7 @@ use bevy_comics_testkit::reference::{budget::Densities, link::Place};
 
 use super::*;
 
-/// The cracks between the pixels of a square picture whose centres have different values. Places
+/// The cracks between the pixels of a square picture whose centers have different values. Places
 /// are relative to its middle.
 fn borders(size: i64, value: impl Fn(f64, f64) -> i64) -> HashSet<Place> {
     let half = 0.5 * size as f64;
@@ -42,7 +42,7 @@ fn assert_density(spacings: &[i32], turns: &[i32]) {
         for &turn in turns {
             let (sin, cos) = (f64::from(turn) * 15.0).to_radians().sin_cos();
             let places = (0..spacing).map(|shift| {
-                // Away from the centres of pixels.
+                // Away from the centers of pixels.
                 let along = |x: f64, y: f64| x * cos + y * sin + f64::from(shift) + 0.013;
                 let line = |x, y| (along(x, y) / f64::from(spacing)).floor() as i64;
                 let densities = Densities::new(&borders(SIZE, line), [SIZE; 2]);

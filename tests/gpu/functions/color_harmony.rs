@@ -1,4 +1,4 @@
-//! Complementary colours and two hues.
+//! Complementary colors and two hues.
 
 use bevy_comics::effects::HarmonyCurve;
 use bevy_comics_testkit::reference::color_harmony;
@@ -8,7 +8,7 @@ use crate::prelude::*;
 
 const HARMONY: &str = "#import bevy_comics::effects::color_harmony::{ColorHarmony, harmonize}";
 
-/// Evaluates rows of settings, a colour and depth.
+/// Evaluates rows of settings, a color and depth.
 const BODY: &str = "let s = ColorHarmony(
         vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u), u(8u), u(9u),
     );
@@ -86,22 +86,22 @@ fn for_cases(cases: impl Strategy<Value = Case>, check: impl Fn(&Case, [f32; 4])
     });
 }
 
-/// Light that no display shows included; displayable colours stay displayable, and greys stay as
+/// Light that no display shows included; displayable colors stay displayable, and grays stay as
 /// they are, to the bit.
 #[test]
-fn harmony_matches_the_reference_stays_in_gamut_and_keeps_greys() {
+fn harmony_matches_the_reference_stays_in_gamut_and_keeps_grays() {
     let wide = (wide_component(), wide_component(), wide_component());
     let shown = (component(), component(), component());
     let color = prop_oneof![
         2 => wide.prop_map(|(r, g, b)| [r, g, b]),
         1 => shown.prop_map(|(r, g, b)| [r, g, b]),
-        1 => component().prop_map(|grey| [grey; 3]),
+        1 => component().prop_map(|gray| [gray; 3]),
     ];
     for_cases(
         (settings(), color, depth_pair()),
         |(s, c, (d, l)), result| {
             let reference = color_harmony::harmonize(s, rgb(c), f64::from(*d), f64::from(*l));
-            // Colours far beyond white round in all components by a fraction of the largest.
+            // Colors far beyond white round in all components by a fraction of the largest.
             let largest = color::largest(rgb(c).map(f64::abs)).max(1.0);
             let rounding = (0..3).map(|i| (f64::from(result[i]) - reference[i]).abs());
             let is_rounding = rounding.fold(0.0, f64::max) <= CONVERSION_ERROR * largest;
@@ -119,22 +119,22 @@ fn harmony_matches_the_reference_stays_in_gamut_and_keeps_greys() {
             };
             let is_shown = result[..3].iter().all(|x| (-over..=1.0 + over).contains(x));
             assert!(is_shown, "{s:?}, {c:?} at {d}: {result:?}");
-            let is_grey = c[0] == c[1] && c[1] == c[2];
-            if is_grey && (s.mode != HarmonyMode::TwoHues || s.offset == 0.0) {
+            let is_gray = c[0] == c[1] && c[1] == c[2];
+            if is_gray && (s.mode != HarmonyMode::TwoHues || s.offset == 0.0) {
                 let kept = match s.equations {
                     Equations::Faithful => result[0],
                     _ => c[0],
                 };
-                assert_eq!(result[..3], [kept; 3], "{s:?}: grey {c:?}");
+                assert_eq!(result[..3], [kept; 3], "{s:?}: gray {c:?}");
             }
         },
     );
 }
 
-/// The complement of the complement at full distance is the colour, where the display can show
+/// The complement of the complement at full distance is the color, where the display can show
 /// the complement.
 #[test]
-fn the_complement_of_the_complement_is_the_colour() {
+fn the_complement_of_the_complement_is_the_color() {
     let s = ColorHarmony {
         mode: HarmonyMode::Distance,
         complement: 1.0,
@@ -179,8 +179,8 @@ fn complements_lie_opposite_and_two_hues_are_two() {
     let cases = (full, color).prop_map(|(s, (r, g, b))| (s, [r, g, b], (1.0, 0.0)));
     for_cases(cases, |(s, [r, g, b], _), result| {
         let (before, after) = (lab([*r, *g, *b, 1.0]), lab(result));
-        // In linear light, mixing with grey changes the lightness a little; the brute force
-        // over the cube of colours finds at most 0.0022.
+        // In linear light, mixing with gray changes the lightness a little; the brute force
+        // over the cube of colors finds at most 0.0022.
         assert!(
             (before.lightness - after.lightness).abs() < 0.01,
             "{s:?}: {before:?} became {after:?}"
@@ -189,7 +189,7 @@ fn complements_lie_opposite_and_two_hues_are_two() {
             HarmonyMode::TwoHues => color_harmony::hue(s.color).map(|v| v as f32),
             _ => [before.a, before.b],
         };
-        // Mixing with grey also bends the hue of what was out of gamut.
+        // Mixing with gray also bends the hue of what was out of gamut.
         let reference = color_harmony::harmonize(s, rgb(&[*r, *g, *b]), 1.0, 0.0);
         if reference.iter().any(|v| !(1e-4..=1.0 - 1e-4).contains(v)) {
             return;
@@ -209,9 +209,9 @@ fn complements_lie_opposite_and_two_hues_are_two() {
 #[test]
 fn the_offset_puts_the_hue_in_front() {
     let s = ColorHarmony::default();
-    let grey = [0.3f32; 3];
+    let gray = [0.3f32; 3];
     let rows: Vec<_> = [0.0f32, 0.5, 1.0]
-        .map(|d| packed(&s, grey, (d, 1.0 - d)))
+        .map(|d| packed(&s, gray, (d, 1.0 - d)))
         .into();
     let warmth: Vec<f32> = gpu()
         .evaluate(HARMONY, BODY, &rows)
@@ -224,7 +224,7 @@ fn the_offset_puts_the_hue_in_front() {
     );
 }
 
-/// Colours in the shade are paler, those in the light stay.
+/// Colors in the shade are paler, those in the light stay.
 #[test]
 fn shade_takes_the_complement() {
     let s = ColorHarmony {

@@ -1,4 +1,4 @@
-//! Colour conversions and the effects that change colour.
+//! Color conversions and the effects that change color.
 
 use super::*;
 
@@ -58,7 +58,7 @@ fn hue_and_its_color_are_inverse() {
         for (row, result) in rows.iter().zip(gpu().evaluate(COLOR, body, rows)) {
             let reference = color::hue_color(color::hue_of(rgb(row)));
             for i in 0..3 {
-                // The error of the hue is that of a quotient, and the colour changes six times as
+                // The error of the hue is that of a quotient, and the color changes six times as
                 // fast as the hue. 1e-5 is 1/400 of a code.
                 let apart = (f64::from(result[i]) - reference[i]).abs();
                 assert!(apart < 1e-5, "{row:?}: {result:?}, {reference:?}");
@@ -67,21 +67,21 @@ fn hue_and_its_color_are_inverse() {
     });
 }
 
-/// The faithful equations change display codes; greys stay grey to the bit.
+/// The faithful equations change display codes; grays stay gray to the bit.
 #[test]
-fn faithful_equations_keep_greys() {
+fn faithful_equations_keep_grays() {
     let modes = select(vec![1.0f32, 2.0, 3.0]);
     let row = (0.0f32..=1.0, wide_component(), depth_pair(), modes)
-        .prop_map(|(amount, grey, (d, l), mode)| [amount, grey, d, l, mode]);
+        .prop_map(|(amount, gray, (d, l), mode)| [amount, gray, d, l, mode]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             "#import bevy_comics::effects::desaturation::{Desaturation, desaturate, saturation_left}
              #import bevy_comics::effects::colorization::{Colorization, colorize}",
-            "let grey = vec3(i(1u));
+            "let gray = vec3(i(1u));
              let s = Desaturation(i(0u), 0.0, 1.7, 2u, 1u);
-             let a = desaturate(s, grey, saturation_left(s, i(3u)));
+             let a = desaturate(s, gray, saturation_left(s, i(3u)));
              let t = Colorization(vec2(0.6, 0.8), 0.7, 0.2, 0.58, i(0u), u(4u), 1u);
-             let b = colorize(t, grey, i(2u), i(3u), 0.75);
+             let b = colorize(t, gray, i(2u), i(3u), 0.75);
              return vec4(a.x - a.y, a.x - a.z, b.x - b.y, b.x - b.z);",
             rows,
         );

@@ -1,9 +1,9 @@
-//! The colours of near, middle and far.
+//! The colors of near, middle and far.
 
 use super::*;
 
 /// Truth: near and far look as they would alone, and a plain layer changes nothing. Here what is
-/// behind 0.6 is grey, over a border that is 0.2 wide.
+/// behind 0.6 is gray, over a border that is 0.2 wide.
 #[test]
 fn a_layer_has_its_own_look_alone() {
     let color = (0.02f32..=0.98, 0.02f32..=0.98, 0.02f32..=0.98, 0.0f32..=1.0);
@@ -12,8 +12,8 @@ fn a_layer_has_its_own_look_alone() {
             "#import bevy_comics::depth::map::layer_weights
              #import bevy_comics::effects::depth_layers::{LayerColors, DepthLayers, layers_color}",
             "let plain = LayerColors(vec2(0.0), 1.0, 1.0, 0.0, 0.0, vec2(0.0));
-             var grey = plain; grey.chroma = 0.0;
-             let s = DepthLayers(plain, plain, grey, vec2(0.3, 0.6), 0.2, 1.0);
+             var gray = plain; gray.chroma = 0.0;
+             let s = DepthLayers(plain, plain, gray, vec2(0.3, 0.6), 0.2, 1.0);
              let w = layer_weights(s.borders, s.softness, i(3u));
              return vec4(layers_color(s, vec3(i(0u), i(1u), i(2u)), w, 0.1), 0.0);",
             rows,

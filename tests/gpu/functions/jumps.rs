@@ -54,7 +54,7 @@ fn the_search_leaves_out_no_contour() {
              let least = 0.70710678 * response * i(4u);
              let one = vec4(1.0);
              let north = Row(w.nw * one, w.n * one, w.ne * one);
-             let here = Row(w.w * one, w.centre * one, w.e * one);
+             let here = Row(w.w * one, w.center * one, w.e * one);
              let south = Row(w.sw * one, w.s * one, w.se * one);
              let found = may_jump(Jumps(f, least, 1.0), north, here, south, one, 1.0);
              return vec4(response, f32(found), 0.0, 0.0);",

@@ -85,7 +85,7 @@ fn for_batches<T: Debug>(row: impl Strategy<Value = T>, check: impl Fn(&[T])) {
         .unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// A colour component in [0, 1]: random, or at a border between two branches of a
+/// A color component in [0, 1]: random, or at a border between two branches of a
 /// formula.
 fn component() -> impl Strategy<Value = f32> {
     prop_oneof![
@@ -94,7 +94,7 @@ fn component() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// A colour component that may lie outside [0, 1].
+/// A color component that may lie outside [0, 1].
 fn wide_component() -> impl Strategy<Value = f32> {
     prop_oneof![4 => component(), 1 => -2.0f32..8.0, 1 => select(vec![65504.0, -65504.0, -0.0, 1e-30])]
 }
@@ -113,7 +113,7 @@ fn rgb(row: &[f32]) -> Rgb {
     [row[0], row[1], row[2]].map(f64::from)
 }
 
-/// Largest difference of two linear colours in display codes; above 1 it is relative
+/// Largest difference of two linear colors in display codes; above 1 it is relative
 /// to the largest component of the reference's: components are mixed, and so are their rounding
 /// errors.
 fn codes_apart(gpu: [f32; 4], reference: Rgb) -> f64 {

@@ -29,7 +29,7 @@ fn four_sharp_boxes_are_kuwaharas_filter() {
 
 const FORMS: [PaintKernel; 2] = [PaintKernel::Box, PaintKernel::Anisotropic];
 
-/// Truth: the variance of noise on one colour falls to less than a tenth; a mean over one box of
+/// Truth: the variance of noise on one color falls to less than a tenth; a mean over one box of
 /// 25 pixels would be a twenty-fifth, but areas are chosen by their noise.
 #[test]
 fn noise_is_painted_over() {
@@ -69,7 +69,7 @@ fn edges_stay_in_place() {
     }
 }
 
-/// Truth: a narrow brush on what is near does not carry its colour into what is painted with a
+/// Truth: a narrow brush on what is near does not carry its color into what is painted with a
 /// wide brush behind it, nor the other way.
 #[test]
 fn brushes_of_two_widths_keep_to_their_sides() {

@@ -74,12 +74,12 @@ fn coverage(lines: &SpeedLines, context: &EffectContext, places: &[[f32; 2]]) ->
 
 fn reference(lines: &SpeedLines, context: &EffectContext) -> Drawing {
     let size = [context.viewport.z, context.viewport.w].map(f64::from);
-    let centre = lines.center.to_array().map(f64::from);
+    let center = lines.center.to_array().map(f64::from);
     Drawing {
         settings: *lines,
         size,
         scale: f64::from(context.scale_factor),
-        centre: [centre[0] * size[0], centre[1] * size[1]],
+        center: [center[0] * size[0], center[1] * size[1]],
         number: context.animation_seed(lines.rate),
     }
 }
@@ -122,7 +122,7 @@ fn lines_cover_their_widths_around_a_circle() {
             let places: Vec<[f32; 2]> = (0..POINTS)
                 .map(|n| {
                     let at = place(n);
-                    [0, 1].map(|i| (drawing.centre[i] + at[i]) as f32)
+                    [0, 1].map(|i| (drawing.center[i] + at[i]) as f32)
                 })
                 .collect();
             let found = coverage(&lines, &context, &places);
@@ -135,7 +135,7 @@ fn lines_cover_their_widths_around_a_circle() {
                     2.0 * drawing.radial(line, rho, drawing.border([cos, sin]))[1]
                 })
                 .sum();
-            // Lines that overlap cover less than their sum: neighbours of this width rarely
+            // Lines that overlap cover less than their sum: neighbors of this width rarely
             // do so.
             let apart = covered / widths - 1.0;
             assert!((-0.02..0.005).contains(&apart), "{scale}, {rho}: {apart}");

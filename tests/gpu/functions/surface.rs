@@ -1,4 +1,4 @@
-//! Lines in the colour of surfaces.
+//! Lines in the color of surfaces.
 
 use bevy_comics_testkit::reference::surface::surface_ink;
 

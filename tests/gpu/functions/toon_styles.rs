@@ -55,7 +55,7 @@ fn equation_6_is_closed_monotone_and_makes_white_0_83() {
     }
 }
 
-/// Truth: each of the levels is one tone, that of the middle of its band, and keeps the colour.
+/// Truth: each of the levels is one tone, that of the middle of its band, and keeps the color.
 #[test]
 fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
     let rows: Vec<[f32; 2]> = (2..=8u8)
@@ -68,12 +68,12 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
          return vec4(banded_color(s, vec3(y), 0.0, 0.0).x, red);",
         &rows,
     );
-    for ([levels, v], [grey, r, g, b]) in rows.into_iter().zip(results) {
+    for ([levels, v], [gray, r, g, b]) in rows.into_iter().zip(results) {
         // Leaves out lightnesses within a code of a step.
         let t = v * levels;
         if (t - t.round()).abs() > levels / 255.0 {
             let middle = (t.floor() + 0.5) / levels;
-            assert!((grey.sqrt() - middle).abs() < 1e-4, "{v} of {levels}");
+            assert!((gray.sqrt() - middle).abs() < 1e-4, "{v} of {levels}");
         }
         let kept = (g / r - 0.25).abs() < 1e-5 && (b / r - 0.1).abs() < 1e-5;
         assert!(v < 0.01 || kept, "{v} of {levels}: {r}, {g}, {b}");

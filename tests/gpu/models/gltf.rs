@@ -13,7 +13,7 @@ pub struct Part {
     pub at: [f32; 3],
     /// Half the size along each axis.
     pub half: [f32; 3],
-    /// Base colour, sRGB.
+    /// Base color, sRGB.
     pub color: [f32; 3],
     pub metallic: f32,
     pub roughness: f32,
@@ -136,7 +136,7 @@ impl Gltf {
         children.expect("a list").push(json!(node));
     }
 
-    /// Gives the first material this image as its base colour.
+    /// Gives the first material this image as its base color.
     pub fn texture(&mut self, image: Value, texture: Value) {
         self.push("images", image);
         let texture = json!({"index": self.push("textures", texture)});

@@ -100,7 +100,7 @@ impl Shot {
         clipped.count() as f64 / pixels.len() as f64
     }
 
-    /// Mean colour of the brighter half of the model's pixels, 0 to 1, sRGB.
+    /// Mean color of the brighter half of the model's pixels, 0 to 1, sRGB.
     fn lit_color(&self) -> [f64; 3] {
         let mut pixels = self.pixels();
         pixels.sort_by_key(|p| std::cmp::Reverse(p.iter().map(|c| u32::from(*c)).sum::<u32>()));
@@ -149,7 +149,7 @@ fn assert_framed(folder: &Path, model: &str, size: (u32, u32), more: &str) {
 
 /// The lamp far from the origin.
 fn lamp_far_off(folder: &Path) -> &'static str {
-    let name = "off-centre.glb";
+    let name = "off-center.glb";
     let far_off = [1200.0, -300.0, 4000.0];
     Gltf::new(&lamp(), 1.0, far_off).write_glb(&folder.join(name));
     name
@@ -235,7 +235,7 @@ fn assert_lit_without_clipping(name: &str, shot: &Shot) {
     assert!(lit[1] > 0.35, "{name}: {lit:?}");
 }
 
-/// That skin has its colour is checked with textures.
+/// That skin has its color is checked with textures.
 #[test]
 fn chrome_is_lit_and_does_not_clip() {
     let folder = folder("light");

@@ -10,7 +10,7 @@ use crate::{
     prelude::*,
 };
 
-/// A PNG of one colour.
+/// A PNG of one color.
 fn png(color: [u8; 3]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image::RgbImage::from_pixel(4, 4, image::Rgb(color))
@@ -26,7 +26,7 @@ fn basis_ktx2() -> Vec<u8> {
     bytes
 }
 
-/// A white ball whose base colour is the embedded image.
+/// A white ball whose base color is the embedded image.
 fn embedded(image: &[u8], mime: &str, texture: Value) -> Gltf {
     let mut gltf = ball([1.0; 3], 0.0, 0.8);
     let view = gltf.view(image);
@@ -108,7 +108,7 @@ fn paint() -> Vec<u8> {
     png(SKIN.map(|c| (255.0 * c).round() as u8))
 }
 
-/// The ball has the colour of its texture, and nothing is said.
+/// The ball has the color of its texture, and nothing is said.
 fn assert_seen(folder: &Path, model: &str) {
     let shot = Shot::take(folder, model, (64, 64), "--style none");
     assert_eq!(warnings(&shot.errors), Vec::<&str>::new(), "{model}");

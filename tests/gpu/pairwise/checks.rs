@@ -152,7 +152,7 @@ pub fn assert_still(small: &mut Small, row: &Row, shown: &Shown) {
 /// How far edges and lines may be from those of the plainest camera, in pixels.
 fn reach(row: &Row) -> u32 {
     let small = row.area == Area::SmallMainPass;
-    // Other samples, and filters of anti-aliasing, move an edge into a neighbour.
+    // Other samples, and filters of anti-aliasing, move an edge into a neighbor.
     let one = 1;
     // A texel of two pixels moves an edge by one more, and the jitter is in texels.
     let texel = u32::from(small) + u32::from(small && row.is_temporal());
@@ -161,7 +161,7 @@ fn reach(row: &Row) -> u32 {
     one + texel + u32::from(smaa)
 }
 
-/// The fraction of the flat parts of `base` where a picture has a colour that `other` has not,
+/// The fraction of the flat parts of `base` where a picture has a color that `other` has not,
 /// within the row's reach.
 fn unexplained(row: &Row, picture: &RgbaImage, other: &RgbaImage, base: &RgbaImage) -> f64 {
     let reach = reach(row);
@@ -182,7 +182,7 @@ fn unexplained(row: &Row, picture: &RgbaImage, other: &RgbaImage, base: &RgbaIma
     strange / flat
 }
 
-/// The row against its base. Anti-aliasing, samples and resolution only mix or move colours at
+/// The row against its base. Anti-aliasing, samples and resolution only mix or move colors at
 /// edges; HDR and the deferred renderer change numbers by a code.
 pub fn assert_near(row: &Row, shown: &Shown, base: &Base) {
     let what = &shown.what;
@@ -195,7 +195,7 @@ pub fn assert_near(row: &Row, shown: &Shown, base: &Base) {
     assert!(ours <= UNDECIDED, "{what}: {ours} with its style");
     // Sees lines that are lost or wider, tones that are encoded twice, and effects that are weaker:
     // mixing keeps the mean. A quarter of the effect is what the rims of wide strokes vary by;
-    // three codes are one for each of: rounding of both pictures, of the deferred colours, of HDR.
+    // three codes are one for each of: rounding of both pictures, of the deferred colors, of HDR.
     let effect = |styled, plain| {
         let (styled, plain) = (mean(styled), mean(plain));
         [0, 1, 2].map(|i| styled[i] - plain[i])

@@ -6,7 +6,7 @@ use image::RgbaImage;
 use crate::prelude::*;
 
 /// Display codes that two pictures of one tone may differ by. A picture of 8 bits, and the deferred
-/// renderer's colours of 8 bits, are off by one code each. The steepest curve between, of dots
+/// renderer's colors of 8 bits, are off by one code each. The steepest curve between, of dots
 /// and strokes that are antialiased over a pixel, makes less than five of each.
 pub const CODES: u8 = 12;
 
@@ -48,7 +48,7 @@ fn codes_near(picture: &RgbaImage, x: u32, y: u32, reach: u32) -> [(u8, u8); 3] 
     found
 }
 
-/// Whether a pixel is at most `reach` pixels from an edge: neighbours whose codes differ by more
+/// Whether a pixel is at most `reach` pixels from an edge: neighbors whose codes differ by more
 /// than
 /// [`CODES`].
 pub fn is_at_edge(picture: &RgbaImage, x: u32, y: u32, reach: u32) -> bool {
@@ -58,8 +58,8 @@ pub fn is_at_edge(picture: &RgbaImage, x: u32, y: u32, reach: u32) -> bool {
     })
 }
 
-/// Whether a pixel has a colour that `other` has within `reach` pixels, or one between those:
-/// anti-aliasing mixes colours of neighbours, other samples move edges to neighbours.
+/// Whether a pixel has a color that `other` has within `reach` pixels, or one between those:
+/// anti-aliasing mixes colors of neighbors, other samples move edges to neighbors.
 pub fn is_explained(
     picture: &RgbaImage,
     other: &RgbaImage,

@@ -13,7 +13,7 @@ pub enum View {
     /// A perspective with an oblique near plane.
     ClipPlane,
     /// A part of a larger perspective view, whose axis is not in its middle.
-    OffCentre,
+    OffCenter,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ const VIEWS: [View; 4] = [
     View::Perspective,
     View::Orthographic,
     View::ClipPlane,
-    View::OffCentre,
+    View::OffCenter,
 ];
 const ANTI_ALIASING: [AntiAliasing; 4] = [
     AntiAliasing::Off,

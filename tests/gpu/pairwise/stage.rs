@@ -24,7 +24,7 @@ pub const PART: URect = URect {
     min: UVec2::new(13, 7),
     max: UVec2::new(103, 67),
 };
-/// The colour of the target where no camera draws: magenta, which the scene does not have.
+/// The color of the target where no camera draws: magenta, which the scene does not have.
 pub const OUTSIDE: [u8; 3] = [255, 0, 255];
 
 /// Frames until a change has reached the picture and the diagnostics. The history of TAA takes
@@ -152,8 +152,8 @@ fn put_cards(small: &mut Small) {
         (Vec3::new(-1.0, -0.5, -2.5), Vec2::splat(0.5), 0.9),
         (Vec3::new(3.0, 2.4, -12.0), Vec2::new(3.0, 2.0), 0.6),
     ];
-    for (at, size, grey) in cards {
-        let card = unlit(Color::srgb(grey, grey, 0.7));
+    for (at, size, gray) in cards {
+        let card = unlit(Color::srgb(gray, gray, 0.7));
         let at = eye() * Transform::from_translation(at);
         small.put(Rectangle::new(size.x, size.y), card, at);
     }
@@ -162,7 +162,7 @@ fn put_cards(small: &mut Small) {
 fn projection(view: View) -> Projection {
     let perspective = PerspectiveProjection::default();
     match view {
-        View::Perspective | View::OffCentre => Projection::Perspective(perspective),
+        View::Perspective | View::OffCenter => Projection::Perspective(perspective),
         View::Orthographic => Projection::Orthographic(OrthographicProjection {
             near: 0.1,
             far: 40.0,
@@ -198,7 +198,7 @@ fn camera(row: &Row) -> Camera {
             physical_size: PART.size(),
             ..default()
         }),
-        sub_camera_view: (row.view == View::OffCentre).then_some(SubCameraView {
+        sub_camera_view: (row.view == View::OffCenter).then_some(SubCameraView {
             full_size: UVec2::new(180, 120),
             offset: Vec2::new(24.0, 6.0),
             size: SIZE,

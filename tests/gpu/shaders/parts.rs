@@ -87,7 +87,7 @@ fn overlays() -> Vec<Definitions> {
         "| EFFECT_CONTOURS_WHOLE | EFFECT_CONTOURS_WHOLE EFFECT_CONTOURS_SINGLE_RING",
         "| EFFECT_CONTOURS_STEADY",
         "EFFECT_FOCUS_PARALLEL=0 | EFFECT_FOCUS_PARALLEL=1",
-        // The styles of lines, and objects that colour effects leave alone.
+        // The styles of lines, and objects that color effects leave alone.
         "| OBJECT_STYLES | OBJECT_STYLES OBJECT_IDS",
         "| INSIDE",
         "| SAME_SIZE",
@@ -118,7 +118,7 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
     if focus {
         names.push("EFFECT_FOCUS_STYLE=4");
     }
-    // Of these effects, the focus alone is one that changes colours.
+    // Of these effects, the focus alone is one that changes colors.
     if ids && focus {
         names.extend(["UNSTYLED", "UNSTYLED_COLORS"]);
     }

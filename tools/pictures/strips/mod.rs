@@ -254,7 +254,7 @@ fn objects() -> Vec<Strip> {
     use BuiltIn::{Mountains, Teapot, Village};
     use Motion::{Sway, Turntable, Walk};
     let plain = Outlines::default();
-    let grey = |style: ComicStyle| style.with(Desaturation::default());
+    let gray = |style: ComicStyle| style.with(Desaturation::default());
     let levels = |style: ComicStyle| {
         style.with(IsoLines {
             step: 50.0,
@@ -266,7 +266,7 @@ fn objects() -> Vec<Strip> {
         Strip::new("x-ray", Village, Walk, plain).on(stages::hide_a_figure),
         Strip::new("no-style", Teapot, Turntable, plain)
             .on(stages::unstyle_one)
-            .with(grey),
+            .with(gray),
         Strip::new("transparent", Teapot, Sway, plain).on(stages::glass),
         Strip::new("iso-lines", Mountains, Walk, plain).with(levels),
     ]

@@ -64,7 +64,7 @@ pub fn select_one(studio: &mut Studio) {
     }
 }
 
-/// What the camera looks at keeps its colours.
+/// What the camera looks at keeps its colors.
 pub fn unstyle_one(studio: &mut Studio) {
     let target = studio.vantage.target;
     let world = studio.headless.app.world_mut();

@@ -1,8 +1,8 @@
-//! Camera distance and centring such that a model fills the frame.
+//! Camera distance and centering such that a model fills the frame.
 //!
 //! A frustum plane is a linear function of position. So all that framing needs
 //! to know of a model is its support function: the largest value of `n . p` over
-//! its points `p`. Distances and centres follow without iteration over frames.
+//! its points `p`. Distances and centers follow without iteration over frames.
 
 use bevy::prelude::*;
 
@@ -15,11 +15,11 @@ pub const FOV: f32 = 30.0 * std::f32::consts::PI / 180.0;
 /// Direction from the model to the camera, world space; glTF models face `+Z`.
 const FROM: Vec3 = Vec3::new(0.55, 0.33, 1.0);
 
-/// The points of a model, relative to the centre of their bounding box.
+/// The points of a model, relative to the center of their bounding box.
 pub struct AffectedArea {
     points: Points,
-    /// Centre of the bounding box, world space.
-    pub centre: Vec3,
+    /// Center of the bounding box, world space.
+    pub center: Vec3,
     /// Half the diagonal of the bounding box, world units.
     pub radius: f32,
 }
@@ -51,9 +51,9 @@ impl AffectedArea {
         let (low, high) = points
             .iter()
             .fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)));
-        let centre = low.midpoint(high);
+        let center = low.midpoint(high);
         for point in &mut points {
-            *point -= centre;
+            *point -= center;
         }
         let points = if turned {
             let profile = |p: &Vec3| Vec2::new(p.x.hypot(p.z), p.y);
@@ -63,9 +63,9 @@ impl AffectedArea {
         };
         Some(Self {
             points,
-            centre,
+            center,
             // A single point still needs a frame around it.
-            radius: (0.5 * low.distance(high)).max(1e-5 * centre.length().max(1e-3)),
+            radius: (0.5 * low.distance(high)).max(1e-5 * center.length().max(1e-3)),
         })
     }
 
@@ -90,9 +90,9 @@ impl AffectedArea {
         (0.5 * (plus + minus) / tangent, 0.5 * (plus - minus))
     }
 
-    /// Position along `axis` from which the model is centred, for a camera at
+    /// Position along `axis` from which the model is centerd, for a camera at
     /// `distance` along `back`. The narrower a wedge is, the farther is its apex.
-    fn centred(&self, axis: Vec3, back: Vec3, distance: f32, widest: f32) -> f32 {
+    fn centerd(&self, axis: Vec3, back: Vec3, distance: f32, widest: f32) -> f32 {
         let (mut low, mut high) = (1e-4 * widest, widest);
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
@@ -115,9 +115,9 @@ impl AffectedArea {
             .0
             .max(self.wedge(up, back, tangent.y).0)
             .max(self.support(back) + 0.05 * self.radius);
-        let x = self.centred(right, back, distance, tangent.x);
-        let y = self.centred(up, back, distance, tangent.y);
-        let target = self.centre + x * right + y * up;
+        let x = self.centerd(right, back, distance, tangent.x);
+        let y = self.centerd(up, back, distance, tangent.y);
+        let target = self.center + x * right + y * up;
         self.with_planes(target + distance * back, target)
     }
 
@@ -129,7 +129,7 @@ impl AffectedArea {
             (plus + minus, 0.5 * (plus - minus))
         });
         let height = (along.0 / FILL).max(across.0 / (FILL * aspect));
-        let target = self.centre + across.1 * right + along.1 * up;
+        let target = self.center + across.1 * right + along.1 * up;
         let distance = self.support(back) + self.radius;
         let mut framing = self.with_planes(target + distance * back, target);
         // A line that is seen end on has no height.
@@ -141,7 +141,7 @@ impl AffectedArea {
     /// wherever the camera stands.
     pub fn with_planes(&self, eye: Vec3, target: Vec3) -> Framing {
         let (_, _, back) = axes(eye - target);
-        let along = back.dot(eye - self.centre);
+        let along = back.dot(eye - self.center);
         let nearest = along - self.support(back);
         let farthest = along + self.support(-back);
         let near = (0.5 * nearest).max(1e-3 * self.radius);

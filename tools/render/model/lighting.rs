@@ -77,7 +77,7 @@ pub fn light_camera(
     (lamps, flat): (bool, bool),
 ) {
     let white = 1.0 / Exposure::default().exposure();
-    // Made for this: base colours come out as they are, highlights never clip.
+    // Made for this: base colors come out as they are, highlights never clip.
     world
         .entity_mut(camera)
         .insert(Tonemapping::KhronosPbrNeutral);
@@ -141,11 +141,11 @@ impl OwnLights<'_, '_> {
     /// Scales all lights by one factor, so that together they light the model,
     /// where it is nearest to them, at [`OWN_LEVEL`]. Exporters differ by orders of
     /// magnitude in the intensities that they write.
-    pub fn level(&mut self, centre: Vec3, radius: f32) {
+    pub fn level(&mut self, center: Vec3, radius: f32) {
         // Lux at the nearest point of the model's sphere. Of a light within the
         // sphere, lux at the distance of its radius.
         let received = |lumens: f32, transform: &GlobalTransform| {
-            let distance = (transform.translation().distance(centre) - radius).max(radius);
+            let distance = (transform.translation().distance(center) - radius).max(radius);
             lumens / (4.0 * PI * distance * distance)
         };
         let points = self.points.iter();
@@ -160,8 +160,8 @@ impl OwnLights<'_, '_> {
         for mut light in &mut self.suns {
             light.illuminance *= factor;
         }
-        // The engine's default range suits scenes of a few metres.
-        let reach = |at: &GlobalTransform| at.translation().distance(centre) + 2.0 * radius;
+        // The engine's default range suits scenes of a few meters.
+        let reach = |at: &GlobalTransform| at.translation().distance(center) + 2.0 * radius;
         for (mut light, at) in &mut self.points {
             light.intensity *= factor;
             light.range = light.range.max(reach(at));

@@ -56,10 +56,10 @@ pub fn load(headless: &mut Headless, path: &Path, turned: bool) -> Result<Model,
         .map_err(|error| cannot(&error))?;
     let extent = AffectedArea::new(points, turned)
         .ok_or_else(|| cannot(&"nothing to see: no mesh in its scene"))?;
-    let (centre, radius) = (extent.centre, extent.radius);
+    let (center, radius) = (extent.center, extent.radius);
     let has_lights = world
         .run_system_once(move |mut lights: lighting::OwnLights| {
-            lights.level(centre, radius);
+            lights.level(center, radius);
             !lights.is_empty()
         })
         .map_err(|error| cannot(&error))?;

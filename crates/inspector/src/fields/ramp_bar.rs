@@ -46,7 +46,7 @@ pub(super) fn show(
     }
 }
 
-/// The tone at a place of a ramp, as `ramp.wgsl` has it for a surface of one colour. `stops`:
+/// The tone at a place of a ramp, as `ramp.wgsl` has it for a surface of one color. `stops`:
 /// sorted.
 fn tone(stops: &[RampStop], at: f32) -> Color {
     let first = stops.first().copied().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The widgets of single values: numbers, colours and modes.
+//! The widgets of single values: numbers, colors and modes.
 
 use bevy::{
     color::{Color, Hsva},

@@ -1,4 +1,4 @@
-//! The colour and the gloss of a picked object: its standard material, or the base of its toon
+//! The color and the gloss of a picked object: its standard material, or the base of its toon
 //! material.
 
 use bevy::{
@@ -32,14 +32,14 @@ const PATH: &str = "material";
 /// What the panel edits of a material.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 struct Base {
-    /// Colour of the surface, by which its texture is multiplied. Alpha counts in transparent
+    /// Color of the surface, by which its texture is multiplied. Alpha counts in transparent
     /// materials.
     base_color: Color,
     /// How rough the surface is: rough ones have large, weak highlights. Toon materials have none
     /// above 0.71. Range 0.089 to 1, default 0.5.
     #[reflect(@FieldRange::linear(0.089, 1.0))]
     perceptual_roughness: f32,
-    /// How much of a metal the surface is: highlights of metals have the colour of the surface.
+    /// How much of a metal the surface is: highlights of metals have the color of the surface.
     /// Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     metallic: f32,
@@ -73,7 +73,7 @@ impl Base {
     }
 }
 
-/// Where the colour and the gloss of a mesh are set last, so that an edit of them stays.
+/// Where the color and the gloss of a mesh are set last, so that an edit of them stays.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
     /// Also of meshes that a `ToonScene` draws: their copies follow.
@@ -181,7 +181,7 @@ impl Exchange for BaseStep {
 }
 
 impl Objects {
-    /// The colour and the gloss of an object. Returns what was there before an edit.
+    /// The color and the gloss of an object. Returns what was there before an edit.
     pub(super) fn base(
         &mut self,
         ui: &mut Ui,

@@ -134,7 +134,7 @@ fn offer(
     let convert = (
         "light.convert",
         "Make it a toon material",
-        "All meshes that have this material get a ToonMaterial with its colours and textures.",
+        "All meshes that have this material get a ToonMaterial with its colors and textures.",
     );
     if !button_with_tooltip(ui, widgets, convert, true) {
         return None;

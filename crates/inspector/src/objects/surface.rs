@@ -100,7 +100,7 @@ impl Surface {
             .min_by(f64::total_cmp)
     }
 
-    /// Centre and half size of the box around all vertices.
+    /// Center and half size of the box around all vertices.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let low = self.positions.iter().copied().reduce(Vec3::min)?;
         let high = self.positions.iter().copied().reduce(Vec3::max)?;

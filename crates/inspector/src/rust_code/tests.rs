@@ -67,7 +67,7 @@ fn numbers_read_back_as_the_same_bits() {
 }
 
 #[test]
-fn colours_keep_their_space_and_value() {
+fn colors_keep_their_space_and_value() {
     for (color, text) in [
         (Color::BLACK, "Color::BLACK"),
         (Color::WHITE, "Color::WHITE"),

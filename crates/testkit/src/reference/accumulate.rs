@@ -12,9 +12,9 @@ pub fn inside(size: At, at: At) -> At {
 }
 
 /// A square of pixels around one, `spacing` apart: as many of them to each side as `reach`.
-pub fn square(centre: At, reach: i64, spacing: i64) -> impl Iterator<Item = At> {
+pub fn square(center: At, reach: i64, spacing: i64) -> impl Iterator<Item = At> {
     (-reach..=reach).flat_map(move |y| {
-        (-reach..=reach).map(move |x| [centre[0] + spacing * x, centre[1] + spacing * y])
+        (-reach..=reach).map(move |x| [center[0] + spacing * x, center[1] + spacing * y])
     })
 }
 
@@ -34,7 +34,7 @@ fn cubic_weights(f: f64) -> [f64; 4] {
     ]
 }
 
-/// Ink of the last frame at a place: bicubic between the centres of pixels.
+/// Ink of the last frame at a place: bicubic between the centers of pixels.
 pub fn past_at(place: [f64; 2], ink: impl Fn(At) -> Rgb) -> Rgb {
     let low = place.map(|p| (p - 0.5).floor());
     let [across, down] = [0, 1].map(|k| cubic_weights(place[k] - 0.5 - low[k]));

@@ -11,7 +11,7 @@ fn softness(s: &BlackFlats) -> f64 {
     f64::from(s.softness).max(1e-3)
 }
 
-/// Coverage of a dark area, 0 to 1. `linear`: the unstyled colour; `l`: complement
+/// Coverage of a dark area, 0 to 1. `linear`: the unstyled color; `l`: complement
 /// of the depth map.
 pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
     let threshold = f64::from(s.value.unwrap_or(0.0)) * mix(1.0, l, f64::from(s.depth_weight));

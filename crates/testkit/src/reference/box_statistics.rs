@@ -32,7 +32,7 @@ impl Sheet {
         (0..2).all(|i| (0..self.size[i] as i64).contains(&at[i]))
     }
 
-    /// Bilinear between the centres of pixels.
+    /// Bilinear between the centers of pixels.
     pub fn between(&self, at: [f64; 2]) -> Rgba {
         let low = at.map(|v| (v - 0.5).floor());
         let [fx, fy] = [0, 1].map(|i| at[i] - 0.5 - low[i]);
@@ -52,7 +52,7 @@ impl Sheet {
     }
 }
 
-/// The mean over a box: of the square root of linear light, of the square of that colour's
+/// The mean over a box: of the square root of linear light, of the square of that color's
 /// luminance, and the fraction of the box that shows something.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Means {

@@ -82,24 +82,24 @@ pub fn piece(lines: &HashSet<Place>, place: Place, size: [i64; 2]) -> Option<usi
     Some(cracks)
 }
 
-/// The centre of a crack; whole numbers are corners of pixels.
-fn centre(place: Place) -> [f64; 2] {
+/// The center of a crack; whole numbers are corners of pixels.
+fn center(place: Place) -> [f64; 2] {
     let [first, last] = corners(place);
     [0, 1].map(|i| (first[i] + last[i]) as f64 / 2.0)
 }
 
-/// Offset and slope from the mean of seven centres in a row and the direction from the first
+/// Offset and slope from the mean of seven centers in a row and the direction from the first
 /// to the last; `None` if there are no seven, or if they run across the crack.
 pub fn mean_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
     let [back, on] = corners(place).map(|corner| follow(lines, (place, corner), 3).0);
     if back.len() < 3 || on.len() < 3 {
         return None;
     }
-    let own = centre(place);
-    let [b, c] = [centre(back[2]), centre(on[2])];
+    let own = center(place);
+    let [b, c] = [center(back[2]), center(on[2])];
     let (along, across) = if place.1 == 0 { (1, 0) } else { (0, 1) };
-    let around = || back.iter().chain(&on).map(|place| centre(*place));
-    let away = |i: usize| around().map(|centre| centre[i] - own[i]).sum::<f64>() / 7.0;
+    let around = || back.iter().chain(&on).map(|place| center(*place));
+    let away = |i: usize| around().map(|center| center[i] - own[i]).sum::<f64>() / 7.0;
     let [rise, run] = [across, along].map(|i| c[i] - b[i]);
     if rise.abs() >= 1.9 * run.abs() {
         return None;
@@ -113,7 +113,7 @@ pub fn mean_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
 pub const DIAGONALS: RangeInclusive<usize> = 7..=31;
 
 /// The cracks of a diagonal run from one of them in the direction `way` (1 or -1) of its corner,
-/// itself included; from the last one's centre to the corner where the next run begins, along and
+/// itself included; from the last one's center to the corner where the next run begins, along and
 /// across the first crack, if the line goes on in it; and whether the diagonal goes to the
 /// south-east (1) or to the north-east (-1), if it is known.
 fn stairs(
@@ -135,7 +135,7 @@ fn stairs(
         let onward = step[0] == 1 || sense == Some(step[1]);
         if !turns || !onward {
             // Both runs meet at the corner between the two cracks of a kind.
-            let own = centre(last);
+            let own = center(last);
             let to_corner = [along, across].map(|axis| at[axis] as f64 - own[axis]);
             return (i + 1, onward.then_some(to_corner), sense);
         }

@@ -45,7 +45,7 @@ pub fn luminance([r, g, b]: Rgb) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Lightness of a linear colour by Hunter's formula (1948): the square root of
+/// Lightness of a linear color by Hunter's formula (1948): the square root of
 /// the luminance.
 pub fn lightness(linear: Rgb) -> f64 {
     luminance(linear).clamp(0.0, 1.0).sqrt()
@@ -59,7 +59,7 @@ pub fn smallest(c: Rgb) -> f64 {
     c.into_iter().fold(f64::MAX, f64::min)
 }
 
-/// HSV hue in turns, [0, 1); 0 for greys.
+/// HSV hue in turns, [0, 1); 0 for grays.
 pub fn hue_of([r, g, b]: Rgb) -> f64 {
     let (v, c) = (largest([r, g, b]), largest([r, g, b]) - smallest([r, g, b]));
     if c <= 0.0 {
@@ -75,7 +75,7 @@ pub fn hue_of([r, g, b]: Rgb) -> f64 {
     (sextant / 6.0).rem_euclid(1.0)
 }
 
-/// The colour with HSV saturation and value 1 at a hue in turns, by the six
+/// The color with HSV saturation and value 1 at a hue in turns, by the six
 /// sectors of the HSV hexagon.
 pub fn hue_color(hue: f64) -> Rgb {
     let h = hue.rem_euclid(1.0) * 6.0;
@@ -90,7 +90,7 @@ pub fn hue_color(hue: f64) -> Rgb {
     }
 }
 
-/// `OKLab` (lightness, a, b) of a linear colour, with the matrices that Ottosson
+/// `OKLab` (lightness, a, b) of a linear color, with the matrices that Ottosson
 /// published (2020).
 pub fn linear_to_oklab(c: Rgb) -> Rgb {
     const M1: [Rgb; 3] = [
@@ -120,24 +120,24 @@ pub fn oklab_to_linear(lab: Rgb) -> Rgb {
     apply(M1, apply(M2, lab).map(|x| x * x * x))
 }
 
-/// Mixes a colour with the grey of the same `OKLab` lightness, as little as possible, until it is
+/// Mixes a color with the gray of the same `OKLab` lightness, as little as possible, until it is
 /// displayable, or no farther from that than `before` was.
 pub fn in_gamut(c: Rgb, lab_lightness: f64, before: Rgb) -> Rgb {
-    let grey = lab_lightness.powi(3);
-    let low = smallest(before).min(0.0).min(grey);
-    let high = largest(before).max(1.0).max(grey);
+    let gray = lab_lightness.powi(3);
+    let low = smallest(before).min(0.0).min(gray);
+    let high = largest(before).max(1.0).max(gray);
     let kept = c
         .into_iter()
         .map(|x| match x {
-            x if x > high => (high - grey) / (x - grey),
-            x if x < low => (grey - low) / (grey - x),
+            x if x > high => (high - gray) / (x - gray),
+            x if x < low => (gray - low) / (gray - x),
             _ => 1.0,
         })
         .fold(1.0, f64::min);
-    c.map(|x| super::mix(grey, x, kept))
+    c.map(|x| super::mix(gray, x, kept))
 }
 
-/// Tones of cyan, magenta, yellow and black ink for a colour of 0 to 1. `black`: fraction of
+/// Tones of cyan, magenta, yellow and black ink for a color of 0 to 1. `black`: fraction of
 /// the darkness that all channels share which black takes.
 pub fn separated(c: Rgb, black: f64) -> [f64; 4] {
     let k = black * (1.0 - largest(c));

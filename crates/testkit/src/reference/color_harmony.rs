@@ -16,7 +16,7 @@ use bevy_comics::{
     effects::{Equations, HarmonyCurve, HarmonyMode},
 };
 
-/// The unit vector (a, b) of a colour's hue in `OKLab`; 0 for greys.
+/// The unit vector (a, b) of a color's hue in `OKLab`; 0 for grays.
 pub fn hue(color: Color) -> [f64; 2] {
     let c = color.to_linear();
     let [_, a, b] = linear_to_oklab([c.red, c.green, c.blue].map(f64::from));

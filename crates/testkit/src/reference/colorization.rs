@@ -19,7 +19,7 @@ fn linear_of(color: Color) -> Rgb {
     [c.red, c.green, c.blue].map(f64::from)
 }
 
-/// (lightness, chroma) in `OKLab` of the displayable colour with the most chroma
+/// (lightness, chroma) in `OKLab` of the displayable color with the most chroma
 /// in the direction (`a`, `b`), a unit vector. Bisection finds the largest ratio of
 /// chroma to lightness at which no linear component is negative; the lightness
 /// then makes the largest component 1.

@@ -14,7 +14,7 @@ use bevy_comics::{
 
 const SOBEL: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0], [-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0]];
 
-/// Change of raw depth per tap of the plane through the centre `c`: the smaller
+/// Change of raw depth per tap of the plane through the center `c`: the smaller
 /// absolute slope of both sides if their signs agree, else 0. If one side is sky,
 /// the slope of the other side.
 fn slope(before: f64, c: f64, after: f64) -> f64 {

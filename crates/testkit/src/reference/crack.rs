@@ -15,12 +15,12 @@ use bevy_comics::{
     lines::{CreaseSource, LineEdge, LineResponse},
 };
 
-/// The border between a pixel and its neighbour to the east or south.
+/// The border between a pixel and its neighbor to the east or south.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crack {
     /// Whether a silhouette, a crease, an object edge runs along it.
     pub kinds: [bool; 3],
-    /// Whether the line belongs to the pixel, not to the neighbour.
+    /// Whether the line belongs to the pixel, not to the neighbor.
     pub mine: bool,
     /// Ink of the silhouette or crease, 0 to 1.
     pub ink: f64,
@@ -38,7 +38,7 @@ pub struct Crack {
     pub shifts: bool,
 }
 
-/// The neighbours of a pixel.
+/// The neighbors of a pixel.
 pub const SIDES: [[i64; 2]; 2] = [[1, 0], [0, 1]];
 
 /// Ink for a response `p`. Softness 1 makes the ramp around `limit` as wide as
@@ -82,7 +82,7 @@ fn respond(response: LineResponse, amount: f64, half_width: f64, object: bool) -
     [ink, thinner.max(thinnest)]
 }
 
-/// Six values in a row: the pixel is the third, its neighbour the fourth. Places
+/// Six values in a row: the pixel is the third, its neighbor the fourth. Places
 /// outside the viewport are clamped to its border.
 fn along<T>(view: &View, [x, y]: [i64; 2], v: [i64; 2], at: impl Fn(u32, u32) -> T) -> [T; 6] {
     let [x0, y0, w, h] = view.viewport.map(i64::from);
@@ -159,7 +159,7 @@ fn sections(
 }
 
 /// Whether a hard line between two surfaces of which none hides the other belongs to the pixel,
-/// not to its neighbour.
+/// not to its neighbor.
 fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
     let objects = along(view, pixel, v, |x, y| match view.ids {
         Some(ids) => ids.pixels[(y * view.width + x) as usize],
@@ -189,8 +189,8 @@ fn is_preferred(view: &View, pixel: [i64; 2], v: [i64; 2]) -> bool {
     }
 }
 
-/// How much raw depth bends at the crack between a pixel and its neighbour at a side, as a fraction of
-/// the reference. Where one of both has one neighbour only, at the border of the viewport, it counts
+/// How much raw depth bends at the crack between a pixel and its neighbor at a side, as a fraction of
+/// the reference. Where one of both has one neighbor only, at the border of the viewport, it counts
 /// as 0. What is outside of it is as the nearest pixel inside.
 fn bend(view: &View, pixel: [i64; 2], side: usize) -> f64 {
     let depths = along(view, pixel, SIDES[side], |x, y| view.depth(x, y, 0));
@@ -218,7 +218,7 @@ fn bend_around(view: &View, [x, y]: [i64; 2], side: usize) -> f64 {
     bends.fold(0.0, f64::max)
 }
 
-/// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
+/// The crack between a pixel and its neighbor at a side, an entry of [`SIDES`].
 /// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
 /// objects are not part of the reference.
 pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64) -> Option<Crack> {

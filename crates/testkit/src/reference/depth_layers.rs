@@ -21,7 +21,7 @@ pub fn weights([near_end, far_start]: [f64; 2], softness: f64, d: f64) -> [f64; 
     [1.0 - not_near, not_near - far, far]
 }
 
-/// The `OKLab` colour of one plane.
+/// The `OKLab` color of one plane.
 fn plane(s: &DepthLayer, [lightness, a, b]: Rgb, change: f64) -> Rgb {
     let tone = match s.bands {
         0 => lightness,

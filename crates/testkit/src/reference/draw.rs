@@ -63,7 +63,7 @@ impl Cracks {
         let widest = f64::from(s.width) * largest_weight(&s.weight);
         let reach = (sheet.largest(0.5 * widest * scale) + 1.0).ceil() as i64 - 1;
         let reach = reach.max(1);
-        // Between the centres of pixels, cracks half a pixel further away count.
+        // Between the centers of pixels, cracks half a pixel further away count.
         let grid_reach = reach + i64::from(s.boil.amplitude > 0.0);
         let mut found = Self {
             width: w,

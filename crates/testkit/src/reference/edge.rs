@@ -5,7 +5,7 @@ use super::Rgb;
 /// Weights of \[CL\] Eq. 1, row by row.
 pub const WEIGHTS: [[f64; 3]; 3] = [[1.0, 2.0, 1.0], [2.0, 0.0, 2.0], [1.0, 2.0, 1.0]];
 
-/// Eq. 1 at the centre of a 3 x 3 window, for any measure of difference.
+/// Eq. 1 at the center of a 3 x 3 window, for any measure of difference.
 pub fn gradient<T: Copy>(window: [[T; 3]; 3], difference: impl Fn(T, T) -> f64) -> f64 {
     let x = window[1][1];
     (0..3)
@@ -125,7 +125,7 @@ pub fn is_ridge(folds: [Option<f64>; 3]) -> bool {
 }
 
 /// Whether the second of three folds in a row is sharper than 60 degrees and than its one
-/// neighbour, where the other is missing.
+/// neighbor, where the other is missing.
 pub fn is_rim_ridge(folds: [Option<f64>; 3]) -> bool {
     match folds {
         [Some(other), Some(fold), None] | [None, Some(fold), Some(other)] => {

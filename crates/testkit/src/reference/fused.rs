@@ -44,7 +44,7 @@ impl Input<'_> {
     }
 
     /// Change of the lightness over a pixel: the sum of the differences to its two
-    /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`. Outside of the viewport, its
+    /// neighbors in the same quad of 2 x 2 pixels, as `fwidthFine`. Outside of the viewport, its
     /// border counts.
     fn change(&self, viewport: [u32; 4], x: u32, y: u32) -> f64 {
         let at = |x, y| color::lightness(self.light(x, y));
@@ -64,7 +64,7 @@ impl Input<'_> {
     }
 }
 
-/// A pixel after the effects that change colours, with its depth map and its complement.
+/// A pixel after the effects that change colors, with its depth map and its complement.
 struct Colored {
     picture: Rgba,
     depth: [f64; 2],
@@ -121,7 +121,7 @@ fn colored(
     }
 }
 
-/// A picture of the viewport at a place between the centres of pixels. `load`: its pixels,
+/// A picture of the viewport at a place between the centers of pixels. `load`: its pixels,
 /// by column and row of the target.
 fn between(viewport: [u32; 4], load: &dyn Fn([u32; 2]) -> Rgba, at: [f64; 2]) -> Rgba {
     let corner = at.map(|v| (v - 0.5).floor());
@@ -170,7 +170,7 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
         let viewport = UVec4::from_array(view.viewport);
         let read = |at| between(view.viewport, &moved, at);
         let cells = halftone::Cells {
-            centre: halftone::centre(s, viewport, UVec2::from_array(input.size)),
+            center: halftone::center(s, viewport, UVec2::from_array(input.size)),
             sheet: (style.get::<Paper>()).map_or(Sheet::SMOOTH, |s| Sheet::new(s, 1.0, 0)),
             picture: &read,
         };
@@ -185,7 +185,7 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
 /// sketch amount of 1.
 ///
 /// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
-/// far rounding at a threshold can move the colour.
+/// far rounding at a threshold can move the color.
 pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgba {
     let source = input.light(x, y);
     let printed = print(style, view, input, [x, y], nudge);

@@ -144,7 +144,7 @@ fn stochastic([x, y]: [f64; 2], size: f64, tone: f64, tile: impl Fn(i64, i64) ->
     sum
 }
 
-/// The tones of the plates for a colour in linear light.
+/// The tones of the plates for a color in linear light.
 pub fn plate_tones(s: &Halftone, linear: Rgb) -> [f64; 4] {
     let [solid_below, bare_above] = [s.solid_below, s.bare_above].map(f64::from);
     let span = (bare_above - solid_below).max(0.05);
@@ -188,7 +188,7 @@ pub fn screen_amount(s: &Halftone, linear: Rgb, d: f64) -> f64 {
 }
 
 /// Where the screens begin, in pixels of the target.
-pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
+pub fn center(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
     let [first, size] = match s.anchor {
         ScreenAnchor::View | ScreenAnchor::Object => {
             [[viewport.x, viewport.y], [viewport.z, viewport.w]]
@@ -202,23 +202,23 @@ pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
 /// What a screen reads besides its pixel.
 pub struct Cells<'a> {
     /// Where the screens begin, in pixels of the target.
-    pub centre: [f64; 2],
+    pub center: [f64; 2],
     /// The sheet that is printed on.
     pub sheet: Sheet,
-    /// The picture at a place: a colour multiplied by its opacity, and the opacity.
+    /// The picture at a place: a color multiplied by its opacity, and the opacity.
     pub picture: &'a dyn Fn([f64; 2]) -> Rgba,
 }
 
-/// The mean colour of four places in the cell of a plate around a pixel at `at`.
+/// The mean color of four places in the cell of a plate around a pixel at `at`.
 fn cell_color(plate: Plate, cells: &Cells, at: [f64; 2], own: Rgb) -> Rgb {
-    let place = [0, 1].map(|i| at[i] - cells.centre[i]);
+    let place = [0, 1].map(|i| at[i] - cells.center[i]);
     let middle = plate.cell(place).map(f64::round);
     let (sin, cos) = plate.degrees.to_radians().sin_cos();
     let mut sum = [0.0; 3];
     for [u, v] in [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]] {
         let [u, v] = [middle[0] + u, middle[1] + v].map(|w| (w - plate.phase) * plate.cell_size);
         let place = [cos * u - sin * v, sin * u + cos * v];
-        let found = (cells.picture)([0, 1].map(|i| cells.centre[i] + place[i]));
+        let found = (cells.picture)([0, 1].map(|i| cells.center[i] + place[i]));
         for (c, sum) in sum.iter_mut().enumerate() {
             *sum += 0.25 * (found[c] + (1.0 - found[3]) * own[c]);
         }
@@ -226,15 +226,15 @@ fn cell_color(plate: Plate, cells: &Cells, at: [f64; 2], own: Rgb) -> Rgb {
     sum
 }
 
-/// The print of a pixel, at a scale factor of 1: `picture` is its colour multiplied by its
-/// opacity, and the opacity; `at` its centre in pixels of the target; `d` its depth map. Not
+/// The print of a pixel, at a scale factor of 1: `picture` is its color multiplied by its
+/// opacity, and the opacity; `at` its center in pixels of the target; `d` its depth map. Not
 /// of grains.
 pub fn halftone(s: &Halftone, picture: Rgba, at: [f64; 2], d: f64, cells: &Cells) -> Rgb {
     let alpha = picture[3];
     let linear = [0, 1, 2].map(|c| picture[c] / alpha.max(1e-3));
     let own = plate_tones(s, linear);
     let amount = screen_amount(s, linear, d);
-    let place = [0, 1].map(|i| at[i] - cells.centre[i]);
+    let place = [0, 1].map(|i| at[i] - cells.center[i]);
     let k = std::array::from_fn(|i| {
         let plate = Plate {
             ink_bleed: 0.5 * cells.sheet.ink_bleed,

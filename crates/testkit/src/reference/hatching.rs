@@ -41,7 +41,7 @@ impl Surface {
     }
 
     /// Where the ray through a place in normalized device coordinates meets a plane, by what the
-    /// rays of neighbouring pixels meet. `origin` and `normal`: of the plane.
+    /// rays of neighboring pixels meet. `origin` and `normal`: of the plane.
     pub fn of_plane(
         world_from_clip: DMat4,
         clip: DVec2,
@@ -222,7 +222,7 @@ impl<'a> Hatch<'a> {
         }
     }
 
-    /// A colour of a darkness that is covered by strokes.
+    /// A color of a darkness that is covered by strokes.
     pub fn hatched(&self, linear: Rgb, tone: f64, cover: f64) -> Rgb {
         let s = self.settings;
         let [ink, paper] = [s.ink, s.paper].map(|c| linear_rgb(c).to_array().map(f64::from));

@@ -35,7 +35,7 @@ pub(super) fn at_corner([x, y]: [i64; 2]) -> [Place; 4] {
 }
 
 /// The cracks that share a corner with one.
-fn neighbours(place: Place) -> impl Iterator<Item = Place> {
+fn neighbors(place: Place) -> impl Iterator<Item = Place> {
     corners(place)
         .into_iter()
         .flat_map(at_corner)
@@ -54,7 +54,7 @@ pub fn joined(lines: &HashSet<Place>, cracks: &HashMap<Place, Crack>) -> HashSet
     for _ in 0..JOINED {
         border = border
             .into_iter()
-            .flat_map(neighbours)
+            .flat_map(neighbors)
             .filter(|place| is_ledge(place) && !all.contains(place))
             .collect();
         all.extend(&border);
@@ -81,7 +81,7 @@ pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
     for _ in 0..steps {
         border = border
             .into_iter()
-            .flat_map(neighbours)
+            .flat_map(neighbors)
             .filter(|place| {
                 let weak = cracks.get(place).is_some_and(|c| !c.ledge);
                 weak && !all.contains(place)

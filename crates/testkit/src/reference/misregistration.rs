@@ -25,7 +25,7 @@ pub fn offsets(s: &Misregistration, scale: f64) -> [[f64; 2]; 4] {
     })
 }
 
-/// The picture with its plates moved, at a place in pixels. `picture`: colour multiplied by
+/// The picture with its plates moved, at a place in pixels. `picture`: color multiplied by
 /// its opacity, and the opacity, at any place.
 pub fn misregistration(
     s: &Misregistration,

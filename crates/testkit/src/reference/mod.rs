@@ -74,7 +74,7 @@ pub mod window;
 
 pub type Rgb = [f64; 3];
 
-/// A colour multiplied by its opacity, and the opacity.
+/// A color multiplied by its opacity, and the opacity.
 pub type Rgba = [f64; 4];
 
 /// Opaque ink over a picture.

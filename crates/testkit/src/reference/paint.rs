@@ -28,7 +28,7 @@ pub struct Scene<'a> {
 /// An area around a pixel: its means, and its weight before its variance counts.
 pub type Area = (Means, f64);
 
-/// The colour of the areas by their weights and variances; `None` if there are none.
+/// The color of the areas by their weights and variances; `None` if there are none.
 pub fn chosen(areas: &[Area], sharpness: f64) -> Option<Rgb> {
     let seen = |m: &Means| m.variance() + UNSEEN;
     let used = || areas.iter().filter(|(_, factor)| *factor > 0.0);
@@ -80,8 +80,8 @@ impl Scene<'_> {
         let stretch = 1.0 + edge[2];
         let long = [edge[0], edge[1]].map(|v| v * radius * stretch);
         let short = [-edge[1], edge[0]].map(|v| v * radius / stretch);
-        let centre = at.map(|v| v as f64 + 0.5);
-        let place = |[x, y]: [f64; 2]| [0, 1].map(|i| centre[i] + x * long[i] + y * short[i]);
+        let center = at.map(|v| v as f64 + 0.5);
+        let place = |[x, y]: [f64; 2]| [0, 1].map(|i| center[i] + x * long[i] + y * short[i]);
         let disc: Vec<_> = (0..SAMPLES)
             .map(|i| {
                 let angle = f64::from(i) * PI * (3.0 - 5f64.sqrt());

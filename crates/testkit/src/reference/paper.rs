@@ -13,7 +13,7 @@ pub fn on_paper(s: &Paper, page: Rgb, height: f64) -> Rgb {
     })
 }
 
-/// The colour of a pixel, multiplied by its opacity. `at`: physical pixels from the render
+/// The color of a pixel, multiplied by its opacity. `at`: physical pixels from the render
 /// target's top left corner; `scale`: physical pixels per logical pixel.
 pub fn paper(s: &Paper, picture: Rgba, at: [f64; 2], scale: f64, sheet: u32) -> Rgb {
     let alpha = picture[3];

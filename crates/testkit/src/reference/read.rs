@@ -3,7 +3,7 @@
 use super::{Rgb, Rgba, draw::Ink, mix, over};
 use bevy_comics::Outlines;
 
-/// The ink at the centre of a pixel, or between the centres of four, by kind. `at` is in
+/// The ink at the center of a pixel, or between the centers of four, by kind. `at` is in
 /// pixels of the viewport.
 pub fn lines_at(ink: &Ink, at: [f64; 2], anywhere: bool, nudge: f64) -> [f64; 3] {
     if !anywhere {
@@ -20,7 +20,7 @@ pub fn lines_at(ink: &Ink, at: [f64; 2], anywhere: bool, nudge: f64) -> [f64; 3]
     std::array::from_fn(|k| mix(above[k], below[k], f[1]))
 }
 
-/// (opacity, colour) of silhouettes, object edges and creases, in this order.
+/// (opacity, color) of silhouettes, object edges and creases, in this order.
 fn strength(s: &Outlines, ink: [f64; 3]) -> [(f64, Rgb); 3] {
     let rgb = |color: bevy::color::Color| {
         let c = color.to_linear();

@@ -7,8 +7,8 @@ fn dot(a: Vec3, b: Vec3) -> f64 {
 }
 
 /// Light of a rectangle of luminance 1 / pi at a place, as a vector: the sum over `cells`
-/// times `cells` pieces of it. `half_right` and `half_up` lead from its centre to two sides;
-/// `at` is the place, relative to the centre.
+/// times `cells` pieces of it. `half_right` and `half_up` lead from its center to two sides;
+/// `at` is the place, relative to the center.
 pub fn rect_light(half_right: Vec3, half_up: Vec3, at: Vec3, cells: usize) -> Vec3 {
     let normal = [
         half_right[1] * half_up[2] - half_right[2] * half_up[1],

@@ -4,7 +4,7 @@ use super::view::View;
 use crate::read_back::{DepthImage, FloatImage, IdImage, WidthImage};
 
 /// Positions of the samples of a pixel in the standard pattern for four, in sixteenths
-/// of a pixel from its centre: x to the right, y down.
+/// of a pixel from its center: x to the right, y down.
 pub const STANDARD_4: [[i32; 2]; 4] = [[-2, -6], [6, -2], [-6, 2], [2, 6]];
 
 /// The sample of largest raw depth; of equal ones the first.

@@ -23,11 +23,11 @@ fn octaves(clip_from_world: DMat4, w: f64, size: f64) -> f64 {
 pub fn similarity_of(
     clip_from_world: DMat4,
     viewport: [f64; 4],
-    centre: DVec3,
+    center: DVec3,
     size: f64,
     rotation: DQuat,
 ) -> Option<Similarity> {
-    let clip = clip_from_world * centre.extend(1.0);
+    let clip = clip_from_world * center.extend(1.0);
     if clip.w <= 0.0 {
         return None;
     }

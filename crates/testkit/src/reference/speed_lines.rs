@@ -19,7 +19,7 @@ pub struct Drawing {
     /// Physical pixels per logical pixel.
     pub scale: f64,
     /// The point, physical pixels from the viewport's top left corner.
-    pub centre: [f64; 2],
+    pub center: [f64; 2],
     /// Number of the drawing.
     pub number: u32,
 }
@@ -55,7 +55,7 @@ impl Drawing {
     /// From the point to the farthest corner, or to its place along the lines.
     pub fn far(&self) -> f64 {
         let [x, y] = [0, 1].map(|i| {
-            let c = self.centre[i];
+            let c = self.center[i];
             c.abs().max((self.size[i] - c).abs())
         });
         let axis = self.axis();
@@ -83,7 +83,7 @@ impl Drawing {
         [turn, self.half_width(own[2], rho, inner, TAU * rho / count)]
     }
 
-    /// Distance of the ellipse's border in the direction of a place from the centre.
+    /// Distance of the ellipse's border in the direction of a place from the center.
     pub fn border(&self, [x, y]: [f64; 2]) -> f64 {
         let hole = self.hole();
         x.hypot(y) / (x / hole[0]).hypot(y / hole[1]).max(1e-6)
@@ -146,7 +146,7 @@ impl Drawing {
 
     /// Coverage of the lines at a place of the viewport.
     pub fn coverage(&self, at: [f64; 2]) -> f64 {
-        let d = [at[0] - self.centre[0], at[1] - self.centre[1]];
+        let d = [at[0] - self.center[0], at[1] - self.center[1]];
         let sum = match self.settings.kind {
             SpeedLineKind::Radial => self.radial_coverage(d),
             _ => self.parallel_coverage(d),

@@ -1,5 +1,5 @@
 //! Reference of a part of `lines/draw/draw.wgsl`: lines run straight between the middles of
-//! neighbouring cracks.
+//! neighboring cracks.
 
 use super::{
     coverage::segment_coverage,

@@ -82,7 +82,7 @@ fn turn(g: &StylizedHighlight) -> DVec2 {
     DVec2::from_angle(f64::from(g.rotation).to_radians())
 }
 
-fn centre(g: &StylizedHighlight, radius: f64) -> DVec2 {
+fn center(g: &StylizedHighlight, radius: f64) -> DVec2 {
     (g.offset.as_dvec2() * radius).clamp_length_max(2.0)
 }
 
@@ -90,7 +90,7 @@ fn centre(g: &StylizedHighlight, radius: f64) -> DVec2 {
 /// radius.
 fn sign_distance(g: &StylizedHighlight, radius: f64, place: DVec2) -> f64 {
     let turn = turn(g);
-    let turned = DVec2::new(turn.x, -turn.y).rotate(place - centre(g, radius));
+    let turned = DVec2::new(turn.x, -turn.y).rotate(place - center(g, radius));
     let y = turned / (g.scale.as_dvec2() * f64::from(g.size) * radius);
     let split = g.split.as_dvec2();
     let y = DVec2::select(split.cmpgt(DVec2::ZERO), y.abs() - split, y);
@@ -107,8 +107,8 @@ fn moved(g: &StylizedHighlight, [du, dv]: [DVec3; 2], radius: f64, half_vector: 
         let shrink = 1.0 - 1.0 / f64::from(scale);
         h = (h - shrink * h.dot(axis) * axis).normalize();
     }
-    let centre = centre(g, radius);
-    h = (h + centre.x * du + centre.y * dv).normalize();
+    let center = center(g, radius);
+    h = (h + center.x * du + center.y * dv).normalize();
     let side = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
     let apart = g.split.as_dvec2() * radius * DVec2::new(side(h.dot(right)), side(h.dot(up)));
     h = (h - apart.x * right - apart.y * up).normalize();

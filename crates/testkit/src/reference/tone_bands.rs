@@ -38,7 +38,7 @@ pub fn split_bands(levels: f64, splits: f64, y: f64, step: f64) -> f64 {
     mix(fewer, more, smoothstep(0.0, 1.0, splits - whole))
 }
 
-/// The colour at the luminance `target`, mixed with grey as far as the display needs
+/// The color at the luminance `target`, mixed with gray as far as the display needs
 /// it.
 fn with_luminance(linear: Rgb, target: f64) -> Rgb {
     let y = luminance(linear);

@@ -34,7 +34,7 @@ pub fn gradient(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
     convolve(steps, kernel).hypot(convolve(steps, transposed(kernel)))
 }
 
-/// Differences of D to the centre, slopes included.
+/// Differences of D to the center, slopes included.
 pub fn map_steps(frame: &Frame, win: &Window) -> Steps {
     let c = frame.with_sky(win.depths[1][1]);
     win.depths.map(|row| row.map(|d| frame.with_sky(d) - c))

@@ -1,4 +1,4 @@
-//! Buildings and props of the village. Lengths are in metres.
+//! Buildings and props of the village. Lengths are in meters.
 
 use bevy::prelude::*;
 
@@ -60,7 +60,7 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
         [cx + 0.3, ridge + 0.7, -z * 0.4 + 0.3],
         0xa0563f,
     );
-    // Door, windows and shutters, each a few centimetres in front of the wall.
+    // Door, windows and shutters, each a few centimeters in front of the wall.
     let frame = rgb(0xf3ead6);
     let glass = rgb(0x35506b);
     let shutter = random.pick(&[rgb(0x2f6f73), rgb(0x9c3d33), rgb(0x3c5c9a), rgb(0x5c7f3a)]);

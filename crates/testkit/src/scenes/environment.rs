@@ -40,16 +40,16 @@ fn studio(direction: Vec3) -> Vec3 {
         + Vec3::new(1.0, 1.0, 1.0) * panel(direction, Vec3::new(0.3, 0.45, -0.85), 0.4, 0.25)
 }
 
-/// A soft-edged upright panel around `centre`, one inside and zero outside.
+/// A soft-edged upright panel around `center`, one inside and zero outside.
 /// `width` and `height` are half sizes as tangents of angles.
-fn panel(direction: Vec3, centre: Vec3, width: f32, height: f32) -> f32 {
-    let centre = centre.normalize();
-    let depth = direction.dot(centre);
+fn panel(direction: Vec3, center: Vec3, width: f32, height: f32) -> f32 {
+    let center = center.normalize();
+    let depth = direction.dot(center);
     if depth <= 0.0 {
         return 0.0;
     }
-    let right = Vec3::Y.cross(centre).normalize();
-    let up = centre.cross(right);
+    let right = Vec3::Y.cross(center).normalize();
+    let up = center.cross(right);
     let edge = |position: f32, half: f32| 1.0 - smooth(0.8 * half, half, (position / depth).abs());
     edge(direction.dot(right), width) * edge(direction.dot(up), height)
 }

@@ -1,5 +1,5 @@
 //! The hall of an old house: stairs with railings, a gallery, and sun through tall windows. Lengths
-//! are in metres.
+//! are in meters.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 

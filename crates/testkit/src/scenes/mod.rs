@@ -157,7 +157,7 @@ impl Stage<'_, '_> {
         }
     }
 
-    /// A rough material that leaves the colour to the vertices.
+    /// A rough material that leaves the color to the vertices.
     pub fn matt(&mut self) -> Handle<StandardMaterial> {
         self.materials.add(StandardMaterial {
             perceptual_roughness: 0.95,

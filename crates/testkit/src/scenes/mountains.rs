@@ -22,10 +22,10 @@ use super::{
 const SIDE: u32 = 1000;
 /// Tiles along each side of the ground. Tiles outside the view are not drawn.
 const TILES: u32 = 10;
-/// Half the width of the world, metres.
+/// Half the width of the world, meters.
 const REACH: f32 = 6000.0;
 
-/// Height of the ground, metres.
+/// Height of the ground, meters.
 pub fn height(p: Vec2) -> f32 {
     let r = p.length();
     let meadow = 1.1 * noise2(p / 31.0) + 0.22 * noise2(p / 7.0);
@@ -37,7 +37,7 @@ pub fn height(p: Vec2) -> f32 {
     meadow + hills + rise * (120.0 + 1500.0 * peaks)
 }
 
-/// Coordinate in metres of a grid line, `t` in [0, 1]: dense around the meadow, wide at
+/// Coordinate in meters of a grid line, `t` in [0, 1]: dense around the meadow, wide at
 /// the horizon.
 fn warp(t: f32) -> f32 {
     let u = 2.0 * t - 1.0;
@@ -134,7 +134,7 @@ pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
     tree
 }
 
-/// One flower: a stem with leaves, and petals around a centre.
+/// One flower: a stem with leaves, and petals around a center.
 fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
     let mut shape = Shape::default();
     let tall = random.range(0.28, 0.62);
@@ -151,13 +151,13 @@ fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
     let radius = random.range(0.075, 0.125);
     let tilt = Quat::from_rotation_x(random.range(-0.5, 0.75))
         * Quat::from_rotation_z(random.range(-0.5, 0.5));
-    let centre = Vec3::Y * tall;
+    let center = Vec3::Y * tall;
     let petals = 5 + (random.unit() * 3.0) as u32;
     for k in 0..petals {
         let a = std::f32::consts::TAU * k as f32 / petals as f32;
         let half = std::f32::consts::TAU / petals as f32 * 0.46;
         let out = |angle: f32, r: f32, y: f32| {
-            centre + tilt * Vec3::new(angle.cos() * r, y, angle.sin() * r)
+            center + tilt * Vec3::new(angle.cos() * r, y, angle.sin() * r)
         };
         let tone = shade(petal, if k % 2 == 0 { 1.0 } else { 0.88 });
         let outline = [
@@ -169,7 +169,7 @@ fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
         ];
         shape.polygon(&outline, tone);
     }
-    let middle = centre + tilt * Vec3::Y * 0.012;
+    let middle = center + tilt * Vec3::Y * 0.012;
     shape.ellipsoid(middle, Vec3::splat(radius * 0.34), 4, 0xf2b51d);
     shape
 }
@@ -192,7 +192,7 @@ fn meadow(random: &mut Random) -> Shape {
     };
     for _ in 0..2600 {
         let p = scatter(random, 34.0);
-        // Flowers near each other have similar colours.
+        // Flowers near each other have similar colors.
         let drift = (noise2(p / 3.1) * 0.5 + 0.5) * kinds.len() as f32;
         let kind = (drift as usize + (random.unit() * 5.0) as usize) % kinds.len();
         let size = random.range(0.7, 1.15);

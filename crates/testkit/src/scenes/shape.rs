@@ -1,4 +1,4 @@
-//! Meshes from coloured primitives.
+//! Meshes from colored primitives.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
 };
 
-/// A colour in linear RGBA, or an sRGB code.
+/// A color in linear RGBA, or an sRGB code.
 pub trait Tint {
     fn rgba(self) -> [f32; 4];
 }
@@ -24,7 +24,7 @@ impl Tint for u32 {
     }
 }
 
-/// A growing triangle mesh with a colour for every vertex.
+/// A growing triangle mesh with a color for every vertex.
 #[derive(Clone, Default)]
 pub struct Shape {
     pub positions: Vec<[f32; 3]>,
@@ -39,7 +39,7 @@ pub fn rgb(hex: u32) -> [f32; 4] {
     Color::srgb_u8(r, g, b).to_linear().to_f32_array()
 }
 
-/// A colour times a factor; alpha stays.
+/// A color times a factor; alpha stays.
 pub fn shade(color: [f32; 4], factor: f32) -> [f32; 4] {
     let [r, g, b, a] = color;
     [r * factor, g * factor, b * factor, a]
@@ -158,13 +158,13 @@ impl Shape {
     /// An ellipsoid whose radius is scaled by `1 + bump(direction)`.
     pub fn blob(
         &mut self,
-        centre: impl Into<Vec3>,
+        center: impl Into<Vec3>,
         radius: impl Into<Vec3>,
         rings: u32,
         color: impl Fn(Vec3) -> [f32; 4],
         bump: impl Fn(Vec3) -> f32,
     ) {
-        let (centre, radius) = (centre.into(), radius.into());
+        let (center, radius) = (center.into(), radius.into());
         let sides = rings * 2;
         let direction = |i: u32, j: u32| {
             let polar = std::f32::consts::PI * i as f32 / rings as f32;
@@ -177,7 +177,7 @@ impl Shape {
             for j in 0..=sides {
                 let d = direction(i, j);
                 let normal = (d / radius).normalize_or(Vec3::Y);
-                self.vertex(centre + d * radius * (1.0 + bump(d)), normal, color(d));
+                self.vertex(center + d * radius * (1.0 + bump(d)), normal, color(d));
             }
         }
         let at = |i: u32, j: u32| first + i * (sides + 1) + j;
@@ -191,13 +191,13 @@ impl Shape {
 
     pub fn ellipsoid(
         &mut self,
-        centre: impl Into<Vec3>,
+        center: impl Into<Vec3>,
         radius: impl Into<Vec3>,
         rings: u32,
         color: impl Tint,
     ) {
         let color = color.rgba();
-        self.blob(centre, radius, rings, |_| color, |_| 0.0);
+        self.blob(center, radius, rings, |_| color, |_| 0.0);
     }
 
     /// The triangles of a grid of vertices from the first one on, with rows of some vertices.

@@ -15,7 +15,7 @@ use super::{
     shape::{blend, rgb},
 };
 
-/// Colours are sRGB codes such as `0xc8413a`.
+/// Colors are sRGB codes such as `0xc8413a`.
 pub struct Sky {
     pub zenith: u32,
     pub middle: u32,
@@ -56,7 +56,7 @@ impl Sky {
     }
 }
 
-/// A cube map of `side` texels with `levels` mip levels, whose linear colours
+/// A cube map of `side` texels with `levels` mip levels, whose linear colors
 /// depend on the direction in world space and on the level.
 pub fn cube_map(side: u32, levels: u32, color: impl Fn(Vec3, u32) -> [f32; 4]) -> Image {
     let mut data = Vec::new();
@@ -93,7 +93,7 @@ pub fn cube_map(side: u32, levels: u32, color: impl Fn(Vec3, u32) -> [f32; 4]) -
     image
 }
 
-/// World direction to the centre of a texel of a cube map.
+/// World direction to the center of a texel of a cube map.
 pub fn direction_of_texel(face: u32, x: u32, y: u32, side: u32) -> Vec3 {
     let u = (x as f32 + 0.5) / side as f32 * 2.0 - 1.0;
     let v = (y as f32 + 0.5) / side as f32 * 2.0 - 1.0;

@@ -1,4 +1,4 @@
-//! A street at night in the rain: lit windows, signs, lamps and a wet road. Lengths are in metres.
+//! A street at night in the rain: lit windows, signs, lamps and a wet road. Lengths are in meters.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -19,7 +19,7 @@ const FRONTS: f32 = 6.4;
 const STOREY: f32 = 3.1;
 
 /// Meshes of all that is lit, of what shines by itself, and of what is mixed over the picture: the
-/// colour of a vertex has its opacity.
+/// color of a vertex has its opacity.
 #[derive(Default)]
 struct Parts {
     lit: Shape,
@@ -27,7 +27,7 @@ struct Parts {
     mixed: Shape,
 }
 
-/// A lamp or a sign: where it is, and its colour.
+/// A lamp or a sign: where it is, and its color.
 struct Shining {
     at: Vec3,
     color: u32,
@@ -370,7 +370,7 @@ fn end_of_the_street(parts: &mut Parts) {
     }
 }
 
-/// A sign: its side, height and place along the street, its size, its colour, and its marks.
+/// A sign: its side, height and place along the street, its size, its color, and its marks.
 type Board<'a> = (f32, f32, f32, Vec2, u32, &'a [[f32; 4]]);
 
 /// Signs of a bar, a kitchen, a hotel and others, and the light they give.

@@ -1,4 +1,4 @@
-//! A standing person, in metres, who looks along +z.
+//! A standing person, in meters, who looks along +z.
 
 use bevy::prelude::*;
 

@@ -15,7 +15,7 @@ use crate::scenes::shape::Shape;
 const HALF: [f32; 3] = [1.0, 0.45, 0.7];
 
 /// Where the faces are cut on each axis. The ends are the inner edges of the chamfers;
-/// neighbouring faces share the cuts, so that no vertex is on the side of a triangle.
+/// neighboring faces share the cuts, so that no vertex is on the side of a triangle.
 const CUTS: [&[f32]; 3] = [
     &[-0.95, -0.8, -0.76, 0.06, 0.1, 0.2, 0.8, 0.95],
     &[-0.4, -0.22, -0.18, 0.18, 0.22, 0.4],
@@ -129,14 +129,14 @@ fn face(shape: &mut Shape, axis: usize, sign: f32) {
 
 /// Adds what fills a square cell with an octagonal recess, in its floor a deeper hole.
 fn counterbore(shape: &mut Shape, cell: [Vec3; 4], out: Vec3) {
-    let centre = cell.iter().sum::<Vec3>() / 4.0;
+    let center = cell.iter().sum::<Vec3>() / 4.0;
     let right = (cell[1] - cell[0]).normalize();
     let up = (cell[3] - cell[0]).normalize();
     // Side k of the cell is opposite to the octagon's side from corner 2 k.
     let octagon = |radius: f32, depth: f32| -> [Vec3; 8] {
         std::array::from_fn(|n| {
             let (sin, cos) = (247.5 + 45.0 * n as f32).to_radians().sin_cos();
-            centre + (right * cos + up * sin) * radius - out * depth
+            center + (right * cos + up * sin) * radius - out * depth
         })
     };
     let rims = [(0.27, 0.0), (0.27, 0.14), (0.15, 0.14), (0.15, 0.5)]
@@ -149,7 +149,7 @@ fn counterbore(shape: &mut Shape, cell: [Vec3; 4], out: Vec3) {
     }
     for n in 0..8 {
         let m = (n + 1) % 8;
-        let inwards = centre - (rim[n] + rim[m]) / 2.0;
+        let inwards = center - (rim[n] + rim[m]) / 2.0;
         for (pair, front) in rims.windows(2).zip([inwards, out, inwards]) {
             let quad = [pair[0][n], pair[0][m], pair[1][m], pair[1][n]];
             facing(shape, &quad, front);

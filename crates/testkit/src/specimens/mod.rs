@@ -34,7 +34,7 @@ pub enum Specimen {
     Wires,
 }
 
-/// The triangles of a part of a specimen and its colour as an sRGB code.
+/// The triangles of a part of a specimen and its color as an sRGB code.
 type Part = (Shape, u32);
 
 impl Specimen {
@@ -58,7 +58,7 @@ impl Specimen {
         }
     }
 
-    /// The parts: a mesh and its base colour. Each becomes an entity at the origin.
+    /// The parts: a mesh and its base color. Each becomes an entity at the origin.
     pub fn parts(self) -> Vec<(Mesh, Color)> {
         let mut parts = match self {
             Self::Organic => organic::parts(),
@@ -82,7 +82,7 @@ fn points(parts: &[Part]) -> impl Iterator<Item = Vec3> {
     positions.map(|p| Vec3::from(*p))
 }
 
-/// Moves the centre of the bounding box to the origin and the farthest vertex onto the
+/// Moves the center of the bounding box to the origin and the farthest vertex onto the
 /// unit sphere.
 fn fit(parts: &mut [Part]) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -90,18 +90,18 @@ fn fit(parts: &mut [Part]) {
         low = low.min(point);
         high = high.max(point);
     }
-    let centre = (low + high) / 2.0;
+    let center = (low + high) / 2.0;
     let radius = points(parts)
-        .map(|point| point.distance(centre))
+        .map(|point| point.distance(center))
         .fold(0.0, f32::max);
     for (shape, _) in parts {
         for position in &mut shape.positions {
-            *position = ((Vec3::from(*position) - centre) / radius).to_array();
+            *position = ((Vec3::from(*position) - center) / radius).to_array();
         }
     }
 }
 
-/// A mesh without the vertex colours of the shape: the colour is the material's.
+/// A mesh without the vertex colors of the shape: the color is the material's.
 fn mesh(shape: Shape) -> Mesh {
     let uvs = vec![[0.0f32; 2]; shape.positions.len()];
     Mesh::new(

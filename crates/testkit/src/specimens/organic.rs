@@ -29,7 +29,7 @@ pub(super) fn parts() -> Vec<Part> {
     vec![(sculpt(54, surface), 0xb98a6e)]
 }
 
-/// The distance of the surface from the centre.
+/// The distance of the surface from the center.
 fn radius(direction: Vec3) -> f32 {
     let bumps = BUMPS.iter().map(|(towards, sharpness, height)| {
         let cosine = direction.dot(towards.normalize());

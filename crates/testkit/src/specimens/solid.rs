@@ -6,7 +6,7 @@ use bevy::{mesh::VertexAttributeValues, prelude::*};
 
 use crate::scenes::shape::Shape;
 
-/// The colour of every vertex: a specimen leaves it to the material.
+/// The color of every vertex: a specimen leaves it to the material.
 pub const PLAIN: [f32; 4] = [1.0; 4];
 
 /// Adds a flat convex polygon whose front is on the side of `outward`.
@@ -22,13 +22,13 @@ pub fn facing(shape: &mut Shape, corners: &[Vec3], outward: Vec3) {
 
 /// Adds a prism: a flat convex outline, moved by `along`.
 pub fn extrude(shape: &mut Shape, outline: &[Vec3], along: Vec3) {
-    let centre = outline.iter().sum::<Vec3>() / outline.len() as f32;
+    let center = outline.iter().sum::<Vec3>() / outline.len() as f32;
     let far: Vec<_> = outline.iter().map(|p| *p + along).collect();
     facing(shape, outline, -along);
     facing(shape, &far, along);
     for (i, a) in outline.iter().enumerate() {
         let b = outline[(i + 1) % outline.len()];
-        let outward = (*a + b) / 2.0 - centre;
+        let outward = (*a + b) / 2.0 - center;
         facing(shape, &[*a, b, b + along, *a + along], outward);
     }
 }
@@ -109,8 +109,8 @@ pub fn ball(shape: &mut Shape, place: Transform, sides: u32) {
     shape.add(&revolve(&rings, sides), place);
 }
 
-/// Adds two balls and the cone that touches both. An end is a centre and a radius; the
-/// centres differ.
+/// Adds two balls and the cone that touches both. An end is a center and a radius; the
+/// centers differ.
 pub fn capsule(shape: &mut Shape, from: (Vec3, f32), to: (Vec3, f32), sides: u32) {
     let along = to.0 - from.0;
     let length = along.length();
@@ -131,14 +131,14 @@ pub fn tube(shape: &mut Shape, path: &[Vec3], radius: f32, sides: u32) {
     let last = path.len() - 1;
     // The frame is carried along the path, so that the tube does not twist.
     let mut side = (path[1] - path[0]).normalize().any_orthonormal_vector();
-    for (i, centre) in path.iter().enumerate() {
+    for (i, center) in path.iter().enumerate() {
         let along = (path[(i + 1).min(last)] - path[i.saturating_sub(1)]).normalize();
         side = side.reject_from_normalized(along).normalize();
         let up = along.cross(side);
         for k in 0..sides {
             let (sin, cos) = (TAU * k as f32 / sides as f32).sin_cos();
             let out = side * cos + up * sin;
-            shape.vertex(*centre + out * radius, out, PLAIN);
+            shape.vertex(*center + out * radius, out, PLAIN);
         }
     }
     let at = |i: u32, k: u32| first + i * sides + k % sides;
@@ -158,7 +158,7 @@ pub fn tube(shape: &mut Shape, path: &[Vec3], radius: f32, sides: u32) {
 }
 
 /// A closed smooth surface of `20 (subdivisions + 1)^2` triangles. `place`: the point of
-/// the surface for each direction from its centre.
+/// the surface for each direction from its center.
 pub fn sculpt(subdivisions: u32, place: impl Fn(Vec3) -> Vec3) -> Shape {
     let sphere = Sphere::new(1.0)
         .mesh()

@@ -1,4 +1,4 @@
-//! A flight of stairs on a landing, in metres. It climbs towards -z.
+//! A flight of stairs on a landing, in meters. It climbs towards -z.
 
 use bevy::prelude::*;
 

@@ -125,9 +125,9 @@ fn the_author_decides() {
     assert_eq!(faces, [SILENT, 64, 127, 64, 68, 68]);
 }
 
-/// With more parts than numbers, neighbours still differ.
+/// With more parts than numbers, neighbors still differ.
 #[test]
-fn neighbours_have_different_numbers() {
+fn neighbors_have_different_numbers() {
     let stairs: Vec<[f32; 3]> = (0..400)
         .flat_map(|i| {
             let [x, y] = [((i + 1) / 2) as f32, (i / 2) as f32];

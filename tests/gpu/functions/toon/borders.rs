@@ -7,7 +7,7 @@ use crate::prelude::*;
 
 const PIECES: usize = 128;
 
-/// Of two lights, the colour, the direction and what arrives; a normal; what of the strength of the
+/// Of two lights, the color, the direction and what arrives; a normal; what of the strength of the
 /// light is kept.
 type Row = [f32; 18];
 

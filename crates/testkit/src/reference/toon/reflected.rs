@@ -15,7 +15,7 @@ use super::{super::detail, super::light::edge_at, ambient::brightness, tones::To
 /// A surface in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// The colour of the material.
+    /// The color of the material.
     pub base: DVec3,
     pub normal: DVec3,
     /// Changes of the normal over a pixel, to the right and down.
@@ -38,7 +38,7 @@ pub struct Lights {
     pub exposure: f64,
 }
 
-/// The colour of a surface. No shadow of something else falls on it, and it has no highlights.
+/// The color of a surface. No shadow of something else falls on it, and it has no highlights.
 pub fn reflected(light: &ToonLight, s: &Surface, lights: &Lights) -> DVec3 {
     let Some(ramp) = &light.ramp else {
         return two_shades(light, s, lights);
@@ -123,7 +123,7 @@ impl Ramped<'_> {
         }
     }
 
-    /// The sum of all lights, each in its own tone. A ramp of absolute colours also colours light
+    /// The sum of all lights, each in its own tone. A ramp of absolute colors also colors light
     /// from all around: in the mean of the tones by the brightness of their lights, or in the tone
     /// of shade.
     fn per_light(&self, lights: &Lights) -> DVec3 {
@@ -157,7 +157,7 @@ impl Ramped<'_> {
         lights.exposure * self.toned(self.tone_of(&key), key.color / PI, even)
     }
 
-    /// The tone of the fraction of all light that arrives, in the colour of all light, whose
+    /// The tone of the fraction of all light that arrives, in the color of all light, whose
     /// brightness is raised to the power of `keep_intensity`.
     fn light_fraction(&self, lights: &Lights) -> DVec3 {
         let all: f64 = lights.suns.iter().map(|sun| bright(sun.color)).sum();

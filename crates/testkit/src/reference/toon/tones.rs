@@ -24,7 +24,7 @@ fn rgb(color: Color) -> Rgb {
     [color.red, color.green, color.blue].map(f64::from)
 }
 
-/// A stop between two, with the colour between in Oklab.
+/// A stop between two, with the color between in Oklab.
 fn between(plain: &RampStop, full: &RampStop, detail: f64) -> Stop {
     let [a, b] = [plain, full].map(|stop| linear_to_oklab(rgb(stop.color)));
     let color = oklab_to_linear(std::array::from_fn(|c| mix(a[c], b[c], detail)));
@@ -50,7 +50,7 @@ impl Tones {
         Self(ramp.stops.iter().enumerate().map(of).collect())
     }
 
-    /// The colours above the lowest one, and how much of each there is over the one below.
+    /// The colors above the lowest one, and how much of each there is over the one below.
     fn edges(&self, arriving: f64, width: f64) -> impl Iterator<Item = (DVec3, f64)> {
         let edge = move |stop: &Stop| edge_at(stop.at, arriving, stop.softness.max(width));
         self.0

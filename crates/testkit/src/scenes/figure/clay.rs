@@ -7,7 +7,7 @@ use bevy::prelude::*;
 
 use crate::scenes::shape::Shape;
 
-/// Colours are left to the materials.
+/// Colors are left to the materials.
 const PLAIN: [f32; 4] = [1.0; 4];
 
 /// Distance to an ellipsoid; exact on its surface only.
