@@ -11,15 +11,15 @@ use crate::lines::{FindPass, LinePasses};
 pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
     let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
     let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
-    let cracks = passes.cracks.is_some_and(|cracks| {
+    let cracks = passes.cracks.as_ref().is_some_and(|cracks| {
         let columns = cracks.columns.is_some_and(render);
-        let find = match cracks.find {
-            FindPass::Cells(cells) => cells.ids().any(compute),
-            FindPass::Pixels(id) => render(id),
+        let find = match &cracks.find {
+            FindPass::Cells(cells) => cells.iter().any(|(_, id)| compute(*id)),
+            FindPass::Pixels(id) => render(*id),
         };
         columns || find || render(cracks.draw)
     });
-    let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
+    let resolve = passes.resolve.is_some_and(render);
     let search = passes.search;
     let search = search.is_some_and(|ids| ids.into_iter().any(compute));
     let drawn = [passes.faithful, passes.history];

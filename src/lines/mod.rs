@@ -60,8 +60,6 @@ pub(crate) use settings::{FogUniform, LinesUniform, ViewFog, has_fog};
 pub(crate) use tiles::{TileList, TileLists, tile_shader, vertices};
 
 use crate::schedule::{ComicsSystems, PrepareComics};
-use find::ResolvePipeline;
-use history::HistoryPipeline;
 use pipelines::LineShaders;
 
 /// Finds the lines of the views that request them.
@@ -73,8 +71,6 @@ pub(crate) fn build_render(app: &mut App) {
     render_app
         .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<HistoryPipeline>>()
         .init_gpu_resource::<SpecializedRenderPipelines<HighlightPipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
@@ -165,7 +161,5 @@ fn init_pipelines(
         commands.entity(view).remove::<(ViewLines, ViewCracks)>();
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
-    commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
-    commands.insert_resource(HistoryPipeline::new(&fullscreen, &assets));
     commands.insert_resource(HighlightPipeline::new(&fullscreen, &assets));
 }

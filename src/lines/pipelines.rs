@@ -12,10 +12,12 @@ use bevy::{
     shader::Shader,
 };
 
-use crate::gpu::definitions;
+use crate::{gpu::definitions, samples};
 
 use super::{
     draw::stroke_layout,
+    find::resolved_formats,
+    history::HISTORY_FORMATS,
     key::LineKey,
     textures::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT},
     tiles::{tile_shader, vertices},
@@ -38,10 +40,12 @@ pub(crate) struct LineShaders {
     settle: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
+    resolve: Handle<Shader>,
     find: Handle<Shader>,
     columns: Handle<Shader>,
     faithful: Handle<Shader>,
     draw: Handle<Shader>,
+    accumulate: Handle<Shader>,
 }
 
 impl LineShaders {
@@ -61,10 +65,12 @@ impl LineShaders {
             settle: load_embedded_asset!(assets, "link/settle.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles/tiles.wgsl"),
             tile: tile_shader(assets),
+            resolve: load_embedded_asset!(assets, "find/resolve.wgsl"),
             find: load_embedded_asset!(assets, "find/find.wgsl"),
             columns: load_embedded_asset!(assets, "draw/columns.wgsl"),
             faithful: load_embedded_asset!(assets, "find/faithful.wgsl"),
             draw: load_embedded_asset!(assets, "draw/draw.wgsl"),
+            accumulate: load_embedded_asset!(assets, "history/accumulate.wgsl"),
         }
     }
 }
@@ -96,47 +102,88 @@ pub(crate) enum SearchPass {
     Ends(LineKey),
 }
 
+impl SearchPass {
+    /// The passes that find cracks in cells and complete them, in their order. `links`: passes that
+    /// continue lines.
+    pub fn in_cells(key: LineKey, links: usize) -> impl Iterator<Item = Self> {
+        let completing = [
+            (LineKey::LEDGES, Self::Join),
+            (LineKey::HOLDS, Self::Hold(key.for_hold())),
+            (LineKey::BRIDGED, Self::CloseGaps),
+            (LineKey::BUDGET, Self::Measure { coarse: false }),
+            (LineKey::BUDGET, Self::Measure { coarse: true }),
+            (LineKey::COMPLETED, Self::Corners),
+            (LineKey::COMPLETED, Self::Settle(key.for_settle())),
+            (LineKey::OVERSHOOTS, Self::Ends(key.for_ends())),
+        ];
+        let completing = completing.into_iter();
+        let completing = completing.filter(move |(flag, _)| key.contains(*flag));
+        let linking = (1..=links).map(move |i| Self::Link { last: i == links });
+        let cells = [Self::Cells(key.for_find())].into_iter();
+        cells.chain(linking).chain(completing.map(|(_, pass)| pass))
+    }
+
+    /// The part of the key of a view that the pass depends on.
+    pub fn key(self) -> LineKey {
+        match self {
+            Self::Walk(key)
+            | Self::Cells(key)
+            | Self::Hold(key)
+            | Self::Settle(key)
+            | Self::Ends(key) => key,
+            _ => LineKey::empty(),
+        }
+    }
+
+    /// The label of the pass and of what it binds.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Walk(_) => "comics_walk",
+            Self::Tiles => "comics_list_tiles",
+            Self::Cells(_) => "comics_find_in_cells",
+            Self::Link { .. } => "comics_link_lines",
+            Self::Join => "comics_join_lines",
+            Self::Hold(_) => "comics_hold_lines",
+            Self::CloseGaps => "comics_close_gaps",
+            Self::Measure { .. } => "comics_measure_lines",
+            Self::Corners => "comics_line_corners",
+            Self::Settle(_) => "comics_settle_lines",
+            Self::Ends(_) => "comics_line_ends",
+        }
+    }
+}
+
 impl SpecializedComputePipeline for LineShaders {
     type Key = SearchPass;
 
     fn specialize(&self, pass: SearchPass) -> ComputePipelineDescriptor {
-        let (label, entry, shader) = match pass {
-            SearchPass::Walk(_) => ("comics_walk", "walk", &self.walk),
-            SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
-            SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
-            SearchPass::Link { .. } => ("comics_link_lines", "link", &self.link),
-            SearchPass::Join => ("comics_join_lines", "join", &self.join),
-            SearchPass::Hold(_) => ("comics_hold_lines", "hold_lines", &self.hold),
-            SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
-            SearchPass::CloseGaps => ("comics_close_gaps", "close_gaps", &self.close_gaps),
-            SearchPass::Measure { .. } => ("comics_measure_lines", "measure", &self.density),
-            SearchPass::Corners => ("comics_line_corners", "corners", &self.corners),
-            SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
+        let (entry, shader) = match pass {
+            SearchPass::Walk(_) => ("walk", &self.walk),
+            SearchPass::Tiles => ("list_tiles", &self.tiles),
+            SearchPass::Cells(_) => ("find_in_cells", &self.cells),
+            SearchPass::Link { .. } => ("link", &self.link),
+            SearchPass::Join => ("join", &self.join),
+            SearchPass::Hold(_) => ("hold_lines", &self.hold),
+            SearchPass::CloseGaps => ("close_gaps", &self.close_gaps),
+            SearchPass::Measure { .. } => ("measure", &self.density),
+            SearchPass::Corners => ("corners", &self.corners),
+            SearchPass::Settle(_) => ("settle", &self.settle),
+            SearchPass::Ends(_) => ("ends", &self.ends),
         };
-        let (layout, shader_defs) = match pass {
-            SearchPass::Walk(key) => (key.walk_layout(), key.defs()),
-            SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
-            SearchPass::Cells(key) => (key.cells_layout(), key.defs()),
-            SearchPass::Link { last } => (
-                LineKey::link_layout(),
-                definitions([(last, "LAST")]).collect(),
-            ),
-            SearchPass::Measure { coarse } => (
-                LineKey::measure_layout(),
-                definitions([(coarse, "COARSE")]).collect(),
-            ),
-            SearchPass::Join => (LineKey::link_layout(), vec![]),
-            SearchPass::Hold(key) => (key.hold_layout(), key.defs()),
-            SearchPass::Ends(key) => (LineKey::ends_layout(), key.defs()),
-            SearchPass::CloseGaps => (LineKey::gaps_layout(), vec![]),
-            SearchPass::Corners => (LineKey::corners_layout(), vec![]),
-            SearchPass::Settle(key) => (key.settle_layout(), key.defs()),
-        };
+        let flags = [
+            (pass == SearchPass::Link { last: true }, "LAST"),
+            (pass == SearchPass::Measure { coarse: true }, "COARSE"),
+        ];
         ComputePipelineDescriptor {
-            label: Some(label.into()),
-            layout: vec![layout],
+            label: Some(pass.label().into()),
+            layout: vec![pass.layout()],
             shader: shader.clone(),
-            shader_defs,
+            shader_defs: pass
+                .key()
+                .defs()
+                .into_iter()
+                .chain(definitions(flags))
+                .collect(),
             entry_point: Some(entry.into()),
             ..Default::default()
         }
@@ -146,22 +193,69 @@ impl SpecializedComputePipeline for LineShaders {
 /// The passes that are render passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum LinePass {
+    /// Picks one of so many samples of every pixel.
+    Resolve { samples: u32 },
+    /// Finds the cracks of every pixel, without compute shaders.
     Find,
+    /// Searches the columns of pixels for cracks.
     Columns,
+    /// Draws the ink of the faithful equations.
     Faithful,
+    /// Draws the ink of cracks.
     Draw,
+    /// Draws the strokes beyond loose ends.
     Strokes,
+    /// Blends ink with the history: in the tiles with ink, or in all pixels.
+    Accumulate { tiled: bool },
 }
 
 impl LinePass {
     /// The part of a key that the pass depends on.
     pub fn part(self, key: LineKey) -> LineKey {
         match self {
+            Self::Resolve { .. } => key.for_resolve(),
             Self::Find => key.for_find(),
             Self::Columns => key.for_columns(),
             Self::Faithful => key.for_faithful(),
             Self::Draw => key.for_draw(),
             Self::Strokes => key.for_strokes(),
+            Self::Accumulate { .. } => key.for_accumulate(),
+        }
+    }
+
+    /// The label of the pass and of what it binds.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Resolve { .. } => "comics_resolve_samples",
+            Self::Find => "comics_find_lines",
+            Self::Columns => "comics_line_columns",
+            Self::Faithful => "comics_faithful_lines",
+            Self::Draw => "comics_draw_lines",
+            Self::Strokes => "comics_line_strokes",
+            Self::Accumulate { .. } => "comics_accumulate_lines",
+        }
+    }
+
+    /// What the pass draws to; `None`: that is not written.
+    fn targets(self, key: LineKey) -> Vec<Option<ColorTargetState>> {
+        // The pass that draws ink has the second target too; the faithful equations do not write it.
+        let inked = |write_mask| -> Vec<_> {
+            let owners = ColorTargetState {
+                write_mask,
+                ..target(OWNER_FORMAT, None)
+            };
+            let owners = key.contains(LineKey::SURFACE).then_some(owners);
+            let ink = target(INK_FORMAT, Some(MAXIMUM));
+            [ink].into_iter().chain(owners).map(Some).collect()
+        };
+        let plain = |format| Some(target(format, None));
+        match self {
+            Self::Resolve { .. } => resolved_formats(key).map(|f| f.and_then(plain)).to_vec(),
+            Self::Find => vec![plain(CRACK_FORMAT)],
+            Self::Columns => vec![plain(COLUMN_FORMAT)],
+            Self::Faithful => inked(ColorWrites::empty()),
+            Self::Draw | Self::Strokes => inked(ColorWrites::ALL),
+            Self::Accumulate { .. } => HISTORY_FORMATS.map(plain).to_vec(),
         }
     }
 }
@@ -170,32 +264,23 @@ impl SpecializedRenderPipeline for LineShaders {
     type Key = (LinePass, LineKey);
 
     fn specialize(&self, (pass, key): (LinePass, LineKey)) -> RenderPipelineDescriptor {
-        let (shader, layout) = match pass {
-            LinePass::Find => (&self.find, key.find_layout()),
-            LinePass::Columns => (&self.columns, key.columns_layout()),
-            LinePass::Faithful => (&self.faithful, key.faithful_layout()),
-            LinePass::Draw => (&self.draw, key.draw_layout()),
-            LinePass::Strokes => (&self.strokes, key.strokes_layout()),
+        let (entry, shader) = match pass {
+            LinePass::Resolve { .. } => ("resolve", &self.resolve),
+            LinePass::Find => ("find", &self.find),
+            LinePass::Columns => ("columns", &self.columns),
+            LinePass::Faithful => ("faithful", &self.faithful),
+            LinePass::Draw => ("draw", &self.draw),
+            LinePass::Strokes => ("stroke", &self.strokes),
+            LinePass::Accumulate { .. } => ("accumulate", &self.accumulate),
         };
-        let (label, entry, targets) = match pass {
-            LinePass::Find => ("comics_find_lines", "find", CRACKS),
-            LinePass::Columns => ("comics_line_columns", "columns", COLUMNS),
-            LinePass::Faithful => ("comics_faithful_lines", "faithful", INK),
-            LinePass::Draw => ("comics_draw_lines", "draw", INK),
-            LinePass::Strokes => ("comics_line_strokes", "stroke", INK),
+        let mut defs = key.defs();
+        if let LinePass::Resolve { samples } = pass {
+            defs.extend(samples::definitions(samples));
+        }
+        let tiled = match pass {
+            LinePass::Accumulate { tiled } => tiled,
+            _ => key.contains(LineKey::BLOCKS),
         };
-        let defs = key.defs();
-        // The pass that draws ink has this target too; the faithful equations do not write it.
-        let owners = Some(ColorTargetState {
-            write_mask: match pass {
-                LinePass::Draw | LinePass::Strokes => ColorWrites::ALL,
-                _ => ColorWrites::empty(),
-            },
-            ..target(OWNER_FORMAT, None)
-        });
-        let inks = !matches!(pass, LinePass::Find | LinePass::Columns);
-        let count = 1 + usize::from(inks && key.contains(LineKey::SURFACE));
-        let tiled = key.contains(LineKey::BLOCKS);
         let (mut vertex, mut primitive) = vertices(tiled, &self.fullscreen, &self.tile);
         if pass == LinePass::Strokes {
             vertex = VertexState {
@@ -207,15 +292,15 @@ impl SpecializedRenderPipeline for LineShaders {
             primitive.topology = PrimitiveTopology::TriangleStrip;
         }
         RenderPipelineDescriptor {
-            label: Some(label.into()),
-            layout: vec![layout],
+            label: Some(pass.label().into()),
+            layout: vec![pass.layout(key)],
             vertex,
             primitive,
             fragment: Some(FragmentState {
                 shader: shader.clone(),
                 shader_defs: defs,
                 entry_point: Some(entry.into()),
-                targets: [Some(targets), owners].into_iter().take(count).collect(),
+                targets: pass.targets(key),
             }),
             ..Default::default()
         }
@@ -242,10 +327,3 @@ const fn target(format: TextureFormat, blend: Option<BlendState>) -> ColorTarget
         write_mask: ColorWrites::ALL,
     }
 }
-
-/// The target of the pass that writes cracks.
-const CRACKS: ColorTargetState = target(CRACK_FORMAT, None);
-/// The target of the pass that searches columns.
-const COLUMNS: ColorTargetState = target(COLUMN_FORMAT, None);
-/// The target of the passes that draw ink.
-const INK: ColorTargetState = target(INK_FORMAT, Some(MAXIMUM));

@@ -32,7 +32,7 @@ use super::{
 };
 
 /// On a view in the render world: the lines of this frame.
-#[derive(Component)]
+#[derive(Component, Default)]
 pub(crate) struct ViewLines {
     pub uniform: UniformBuffer<LinePassUniform>,
     /// One sample of every pixel, if the view is multisampled.
@@ -69,24 +69,6 @@ pub(crate) struct Cracks {
 pub(crate) struct Tiles {
     pub blocks: CachedTexture,
     pub lists: TileLists,
-}
-
-impl Default for ViewLines {
-    fn default() -> Self {
-        let mut uniform = UniformBuffer::default();
-        uniform.set_label(Some("comics_lines"));
-        Self {
-            uniform,
-            resolved: None,
-            cracks: None,
-            tiles: None,
-            ink: None,
-            owners: None,
-            history: None,
-            holds: None,
-            found: AtomicBool::new(false),
-        }
-    }
 }
 
 impl ViewLines {
@@ -153,8 +135,9 @@ impl ViewLines {
         textures: &mut TextureCache,
         (device, queue): (&RenderDevice, &RenderQueue),
     ) -> Option<ViewCracks> {
-        self.resolved = (passes.resolve.as_ref())
-            .map(|(key, _)| Resolved::new((textures, device), *key, request.depth_size));
+        let key = passes.key.for_resolve();
+        self.resolved =
+            (passes.resolve).map(|_| Resolved::new((textures, device), key, request.depth_size));
         let before = self.cracks.take();
         self.cracks = cracks(before, (textures, device, queue), passes, request.rect);
         let before = self.tiles.take().map(|tiles| tiles.lists);
@@ -192,6 +175,7 @@ impl ViewLines {
         let past_size = self.holds.as_ref().map(LineHolds::past_size);
         let uniform = request.uniform(is_new, past_size.unwrap_or_default());
         self.uniform.set(uniform);
+        self.uniform.set_label(Some("comics_lines"));
         self.uniform.write_buffer(device, queue);
         match &self.cracks.as_ref()?.store {
             CrackStore::Buffers(buffers) => Some(buffers.shown(request.rect, request.copies())),

@@ -3,14 +3,12 @@
 use bevy::{
     math::{UVec2, UVec4, Vec4Swizzles},
     render::{
-        render_resource::{
-            BindGroup, BindGroupEntry, Buffer, BufferUsages, CommandEncoder, ComputePipeline,
-        },
+        render_resource::{BindGroupEntry, Buffer, BufferUsages},
         renderer::RenderDevice,
     },
 };
 
-use crate::gpu::{buffer, compute_pass, entry};
+use crate::gpu::{buffer, entry};
 
 /// Pixels along the sides of the squares that a workgroup of `density.wgsl` begins with: 8 x 8
 /// squares, of 8 pixels and then of 64.
@@ -43,16 +41,10 @@ impl LineDensities {
         entry(33, self.buffer.as_entire_binding())
     }
 
-    /// Records both passes of `density.wgsl`.
-    pub fn measure(
-        &self,
-        encoder: &mut CommandEncoder,
-        passes: &[(&ComputePipeline, BindGroup); 2],
-    ) {
-        for ((pipeline, group), side) in passes.iter().zip(GROUPS) {
-            let mut pass = compute_pass(encoder, "comics_measure_lines", (pipeline, group), &[]);
-            let groups = (self.size + side - 1) / side;
-            pass.dispatch_workgroups(groups.x, groups.y, 1);
-        }
+    /// Dispatches a pass of `density.wgsl`.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass, coarse: bool) {
+        let side = GROUPS[usize::from(coarse)];
+        let groups = (self.size + side - 1) / side;
+        pass.dispatch_workgroups(groups.x, groups.y, 1);
     }
 }

@@ -2,4 +2,4 @@
 
 mod resolve;
 
-pub(crate) use resolve::{ResolveKey, ResolvePipeline, Resolved};
+pub(crate) use resolve::{Resolved, resolved_formats};

@@ -1,109 +1,31 @@
 //! The history of lines under temporal anti-aliasing: see `accumulate.wgsl`.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    core_pipeline::FullscreenShader,
-    ecs::resource::Resource,
     math::UVec2,
     render::{
         render_resource::{
-            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, CommandEncoder, FragmentState,
-            IntoBinding, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
-            ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
-            TextureUsages, TextureViewDescriptor,
-            binding_types::{texture_2d, uniform_buffer},
+            BindGroup, BindGroupEntry, CommandEncoder, IntoBinding, RenderPassDescriptor,
+            RenderPipeline, TextureFormat, TextureUsages, TextureViewDescriptor,
         },
         renderer::RenderDevice,
         texture::CachedTexture,
     },
-    shader::{Shader, ShaderDefVal},
 };
 
 use crate::{
     gpu::entry,
     lines::{
-        request::{HistoryRequest, LinePassUniform},
+        request::HistoryRequest,
         settings::Outlines,
         textures::{cleared, descriptor},
-        tiles::{TileList, TileLists, tile_shader, vertices},
+        tiles::{TileList, TileLists, draw_tiles},
     },
 };
 
-/// Ink, finer than that of a frame: small steps towards it are not lost.
-const INK_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// A raw depth, and a number of frames.
-const DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
-
-/// Selects the variant of the pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct HistoryKey {
-    pub oblique: bool,
-    /// Only the tiles with ink are drawn.
-    pub tiled: bool,
-}
-
-impl HistoryKey {
-    pub fn layout() -> BindGroupLayoutDescriptor {
-        let stages = ShaderStages::FRAGMENT;
-        let float = |binding| {
-            texture_2d(TextureSampleType::Float { filterable: false }).build(binding, stages)
-        };
-        let entries = [
-            uniform_buffer::<LinePassUniform>(false).build(1, stages),
-            float(2),
-            float(23),
-            float(24),
-            float(25),
-            float(26),
-        ];
-        BindGroupLayoutDescriptor::new("comics_accumulate_lines", &entries)
-    }
-
-    fn defs(self) -> Vec<ShaderDefVal> {
-        let oblique = self.oblique.then(|| "OBLIQUE".into());
-        ["DEPTH".into()].into_iter().chain(oblique).collect()
-    }
-}
-
-#[derive(Resource)]
-pub(crate) struct HistoryPipeline {
-    fullscreen: FullscreenShader,
-    tile: Handle<Shader>,
-    shader: Handle<Shader>,
-}
-
-impl HistoryPipeline {
-    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
-        Self {
-            fullscreen: fullscreen.clone(),
-            tile: tile_shader(assets),
-            shader: load_embedded_asset!(assets, "accumulate.wgsl"),
-        }
-    }
-}
-
-impl SpecializedRenderPipeline for HistoryPipeline {
-    type Key = HistoryKey;
-
-    fn specialize(&self, key: HistoryKey) -> RenderPipelineDescriptor {
-        let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
-        RenderPipelineDescriptor {
-            label: Some("comics_accumulate_lines".into()),
-            layout: vec![HistoryKey::layout()],
-            vertex,
-            primitive,
-            fragment: Some(FragmentState {
-                shader: self.shader.clone(),
-                shader_defs: key.defs(),
-                entry_point: Some("accumulate".into()),
-                targets: [INK_FORMAT, DEPTH_FORMAT]
-                    .map(|format| Some(format.into()))
-                    .to_vec(),
-            }),
-            ..Default::default()
-        }
-    }
-}
+/// Formats of ink, finer than that of a frame, so that small steps towards it are not lost; and of
+/// a raw depth and a number of frames.
+pub(crate) const HISTORY_FORMATS: [TextureFormat; 2] =
+    [TextureFormat::Rgba16Float, TextureFormat::Rg32Float];
 
 /// The ink of a frame, and the nearest depth around each of its pixels.
 struct Frame {
@@ -139,9 +61,10 @@ impl LineHistory {
             before.settings = *settings;
             return before;
         }
+        let [ink, depth] = HISTORY_FORMATS;
         let frame = || Frame {
-            ink: texture(device, "comics_history_ink", size, INK_FORMAT),
-            depth: texture(device, "comics_history_depth", size, DEPTH_FORMAT),
+            ink: texture(device, "comics_history_ink", size, ink),
+            depth: texture(device, "comics_history_depth", size, depth),
         };
         Self {
             size,
@@ -170,7 +93,7 @@ impl LineHistory {
     pub fn record(
         &self,
         encoder: &mut CommandEncoder,
-        (pipeline, group): (&RenderPipeline, &BindGroup),
+        ready: (&RenderPipeline, &BindGroup),
         tiles: Option<&TileLists>,
     ) {
         let [now, _] = &self.frames;
@@ -179,12 +102,8 @@ impl LineHistory {
             color_attachments: &[Some(cleared(&now.ink)), Some(cleared(&now.depth))],
             ..Default::default()
         });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[]);
-        match tiles {
-            Some(tiles) => tiles.draw(&mut pass, TileList::Inked),
-            None => pass.draw(0..3, 0..1),
-        }
+        let tiles = tiles.map(|tiles| (tiles, TileList::Inked));
+        draw_tiles(&mut pass, ready, tiles);
     }
 }
 

@@ -4,4 +4,4 @@ mod holds;
 mod line_history;
 
 pub(crate) use holds::LineHolds;
-pub(crate) use line_history::{HistoryKey, HistoryPipeline, LineHistory};
+pub(crate) use line_history::{HISTORY_FORMATS, LineHistory};

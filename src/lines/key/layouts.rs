@@ -15,29 +15,110 @@ use super::line_key::LineKey;
 use crate::{
     depth::view::RANGE_SIZE,
     gpu::{UNFILTERABLE, sampled},
-    lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
+    lines::{
+        pipelines::{LinePass, SearchPass},
+        request::LinePassUniform,
+        textures::BLOCK_FORMAT,
+    },
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
 
+impl SearchPass {
+    /// What the pass binds.
+    pub fn layout(self) -> BindGroupLayoutDescriptor {
+        let (label, compute) = (self.label(), ShaderStages::COMPUTE);
+        let mut inputs = self.key().inputs(compute, false);
+        match self {
+            Self::Walk(key) => {
+                let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
+                inputs.push(blocks.build(10, compute));
+                if key.contains(LineKey::CRACKS) {
+                    inputs.extend(written_buffers([16, 17]));
+                }
+                layout(label, compute, inputs)
+            }
+            Self::Tiles => {
+                let blocks = texture_2d(TextureSampleType::Uint).build(12, compute);
+                let lists = written_buffers([14, 15, 31]);
+                layout(label, compute, [blocks].into_iter().chain(lists))
+            }
+            Self::Measure { .. } => {
+                let planes = read_buffers([20]).into_iter();
+                layout(label, compute, planes.chain(written_buffers([33])))
+            }
+            Self::Cells(_) => in_cells(label, inputs, [], [18, 21]),
+            Self::Link { .. } | Self::Join => in_cells(label, inputs, [20], [21]),
+            Self::Hold(_) => in_cells(label, inputs, [28], [21, 29]),
+            Self::CloseGaps => in_cells(label, inputs, [20], [18, 21]),
+            Self::Corners => in_cells(label, inputs, [], [21]),
+            Self::Settle(key) => {
+                if key.contains(LineKey::SMOOTH) {
+                    inputs.extend(written_buffers([22]));
+                }
+                if key.contains(LineKey::BUDGET) {
+                    inputs.extend(read_buffers([33]));
+                }
+                in_cells(label, inputs, [20], [18])
+            }
+            Self::Ends(_) => in_cells(label, inputs, [11, 19, 20], [30]),
+        }
+    }
+}
+
+impl LinePass {
+    /// What the pass binds with its part of a key.
+    pub fn layout(self, key: LineKey) -> BindGroupLayoutDescriptor {
+        let fragment = ShaderStages::FRAGMENT;
+        let uint = |at| texture_2d(TextureSampleType::Uint).build(at, fragment);
+        let ids = key.contains(LineKey::OBJECT_IDS).then(|| ids_entry(false));
+        let entries = match self {
+            Self::Resolve { .. } => key.inputs(fragment, true),
+            Self::Find | Self::Faithful => key.inputs(fragment, false),
+            Self::Columns => key.stored(),
+            Self::Draw if key.contains(LineKey::COLUMNS) => {
+                let blocks = key.contains(LineKey::BLOCKS).then(|| uint(12));
+                let planes = key
+                    .contains(LineKey::BRIDGED)
+                    .then(|| planes_entry(fragment));
+                let entries = [uint(13)].into_iter().chain(blocks);
+                entries.chain(planes).chain(ids).collect()
+            }
+            Self::Draw => key.stored().into_iter().chain(ids).collect(),
+            Self::Strokes => ids.into_iter().collect(),
+            Self::Accumulate { .. } => {
+                let float = |at| texture_2d(UNFILTERABLE).build(at, fragment);
+                let history = [23, 24, 25, 26].map(float);
+                let inputs = key.inputs(fragment, false).into_iter();
+                inputs.chain(history).collect()
+            }
+        };
+        let stages = match self {
+            Self::Strokes => ShaderStages::VERTEX_FRAGMENT,
+            _ => fragment,
+        };
+        layout(self.label(), stages, entries)
+    }
+}
+
 impl LineKey {
     /// The layout entries of what the pass of a part of a key reads of the scene.
-    fn inputs(self, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+    fn inputs(self, stages: ShaderStages, multisampled: bool) -> Vec<BindGroupLayoutEntry> {
         if !self.contains(Self::DEPTH) {
             return vec![];
         }
-        let float = || texture_2d(UNFILTERABLE);
+        let float = |multisampled| sampled(multisampled, UNFILTERABLE);
         // The depth that hides highlighted objects.
-        let picture = sampled(self.contains(Self::MULTISAMPLED_PICTURE), UNFILTERABLE);
+        let picture = float(self.contains(Self::MULTISAMPLED_PICTURE));
         [
-            (Self::DEPTH, float().build(2, stages)),
+            (Self::DEPTH, float(multisampled).build(2, stages)),
             (Self::RANGE, range_entry()),
             (Self::OBJECT_STYLES, object_styles_entry()),
-            (Self::NORMALS, float().build(7, stages)),
-            (Self::OBJECT_IDS, ids_entry(false)),
+            (Self::NORMALS, float(multisampled).build(7, stages)),
+            (Self::OBJECT_IDS, ids_entry(multisampled)),
             (Self::OBJECT_DEPTHS, object_depths_entry()),
             (Self::HIGHLIGHTS, picture.build(27, stages)),
-            (Self::WIDTH_MAP, widths_entry(false, stages)),
-            (Self::MOTION, float().build(24, stages)),
+            (Self::WIDTH_MAP, widths_entry(multisampled, stages)),
+            (Self::MOTION, float(false).build(24, stages)),
         ]
         .into_iter()
         .filter(|(any, _)| self.intersects(*any))
@@ -48,115 +129,17 @@ impl LineKey {
         .collect()
     }
 
-    pub fn walk_layout(self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(ShaderStages::COMPUTE);
-        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
-        entries.push(blocks.build(10, ShaderStages::COMPUTE));
-        if self.contains(Self::CRACKS) {
-            entries.extend(written_buffers([16, 17]));
-        }
-        layout("comics_walk", ShaderStages::COMPUTE, entries)
-    }
-
-    pub fn cells_layout(self) -> BindGroupLayoutDescriptor {
-        let inputs = self.inputs(ShaderStages::COMPUTE);
-        in_cells("comics_find_in_cells", inputs, [], [18, 21])
-    }
-
-    pub fn link_layout() -> BindGroupLayoutDescriptor {
-        in_cells("comics_link_lines", vec![], [20], [21])
-    }
-
-    pub fn gaps_layout() -> BindGroupLayoutDescriptor {
-        in_cells("comics_close_gaps", vec![], [20], [18, 21])
-    }
-
-    pub fn corners_layout() -> BindGroupLayoutDescriptor {
-        in_cells("comics_line_corners", vec![], [], [21])
-    }
-
-    pub fn measure_layout() -> BindGroupLayoutDescriptor {
-        let planes = planes_entry(ShaderStages::COMPUTE);
-        let [densities] = written_buffers([33]);
-        layout(
-            "comics_measure_lines",
-            ShaderStages::COMPUTE,
-            [planes, densities],
-        )
-    }
-
-    pub fn hold_layout(self) -> BindGroupLayoutDescriptor {
-        let inputs = self.inputs(ShaderStages::COMPUTE);
-        in_cells("comics_hold_lines", inputs, [28], [21, 29])
-    }
-
-    pub fn ends_layout() -> BindGroupLayoutDescriptor {
-        in_cells("comics_line_ends", vec![], [11, 19, 20], [30])
-    }
-
-    pub fn strokes_layout(self) -> BindGroupLayoutDescriptor {
-        let ids = self.contains(Self::OBJECT_IDS).then(|| ids_entry(false));
-        layout("comics_line_strokes", ShaderStages::VERTEX_FRAGMENT, ids)
-    }
-
-    pub fn settle_layout(self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(ShaderStages::COMPUTE);
-        if self.contains(Self::SMOOTH) {
-            entries.extend(written_buffers([22]));
-        }
-        if self.contains(Self::BUDGET) {
-            entries.extend(read_buffers([33]));
-        }
-        in_cells("comics_settle_lines", entries, [20], [18])
-    }
-
-    pub fn find_layout(self) -> BindGroupLayoutDescriptor {
-        let fragment = ShaderStages::FRAGMENT;
-        layout("comics_find_lines", fragment, self.inputs(fragment))
-    }
-
-    pub fn faithful_layout(self) -> BindGroupLayoutDescriptor {
-        let fragment = ShaderStages::FRAGMENT;
-        layout("comics_faithful_lines", fragment, self.inputs(fragment))
-    }
-
-    pub fn columns_layout(self) -> BindGroupLayoutDescriptor {
-        layout("comics_line_columns", ShaderStages::FRAGMENT, self.stored())
-    }
-
     /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
     fn stored(self) -> Vec<BindGroupLayoutEntry> {
         let fragment = ShaderStages::FRAGMENT;
+        let words = |at| storage_buffer_read_only_sized(false, None).build(at, fragment);
         let mut entries = if self.contains(Self::BLOCKS) {
-            let cracks = storage_buffer_read_only_sized(false, None).build(11, fragment);
-            vec![cracks, planes_entry(fragment)]
+            vec![words(11), planes_entry(fragment)]
         } else {
             vec![texture_2d(TextureSampleType::Uint).build(11, fragment)]
         };
-        if self.contains(Self::SMOOTH) {
-            entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
-        }
+        entries.extend(self.contains(Self::SMOOTH).then(|| words(19)));
         entries
-    }
-
-    pub fn tiles_layout() -> BindGroupLayoutDescriptor {
-        let blocks = texture_2d(TextureSampleType::Uint).build(12, ShaderStages::COMPUTE);
-        let lists = written_buffers([14, 15, 31]);
-        let entries = [blocks].into_iter().chain(lists);
-        layout("comics_list_tiles", ShaderStages::COMPUTE, entries)
-    }
-
-    pub fn draw_layout(self) -> BindGroupLayoutDescriptor {
-        let fragment = ShaderStages::FRAGMENT;
-        let texture = |at| texture_2d(TextureSampleType::Uint).build(at, fragment);
-        let mut entries = self.stored();
-        if self.contains(Self::COLUMNS) {
-            entries = vec![texture(13)];
-            entries.extend(self.contains(Self::BLOCKS).then(|| texture(12)));
-            entries.extend(self.contains(Self::BRIDGED).then(|| planes_entry(fragment)));
-        }
-        entries.extend(self.contains(Self::OBJECT_IDS).then(|| ids_entry(false)));
-        layout("comics_draw_lines", fragment, entries)
     }
 }
 

@@ -190,13 +190,9 @@ impl LineKey {
 
     pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
-        let equations = [
-            lines.silhouettes.map(|s| s.equations),
-            lines.creases.map(|c| c.equations),
-        ];
-        let [silhouettes, creases] =
-            equations.map(|equations| equations == Some(Equations::Corrected));
-        let faithful = equations.map(|equations| equations == Some(Equations::Faithful));
+        let equations = lines.equations();
+        let [silhouettes, creases] = equations.map(|of| of == Some(Equations::Corrected));
+        let faithful = equations.map(|of| of == Some(Equations::Faithful));
         let object_edges = lines.objects.is_some() && request.ids;
         let rims = silhouettes && (creases || object_edges);
         let fewer = request.simplification.is_some_and(|s| s.threshold > 1.0);
@@ -342,6 +338,19 @@ impl LineKey {
             | Self::DEPTH
             | self.when(Self::FAITHFUL_CREASES, Self::NORMALS)
             | self.when(Self::FADING, self & Self::VISIBLE_RANGE)
+    }
+
+    /// The part that picking samples depends on.
+    pub fn for_resolve(self) -> Self {
+        let lit = Self::LIGHT_WEIGHT | Self::LIT_EDGES;
+        self & (Self::OBLIQUE | Self::OBJECT_IDS | Self::WIDTH_MAP)
+            | Self::DEPTH
+            | self.when(Self::NORMALS | Self::FAITHFUL_CREASES | lit, Self::NORMALS)
+    }
+
+    /// The part that blending ink with the history depends on.
+    pub fn for_accumulate(self) -> Self {
+        self & Self::OBLIQUE | Self::DEPTH
     }
 
     /// The part that completing cracks depends on.

@@ -26,7 +26,7 @@ use crate::{
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     lines::{
         key::LineKey, passes::LinePasses, prepare::ViewLines, request::LineRequest,
-        textures::cleared,
+        textures::cleared, tiles::draw_tiles,
     },
     objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
@@ -205,9 +205,7 @@ impl Inputs<'_> {
             ..Default::default()
         });
         if let Some((pipeline, group)) = faithful {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.draw(0..3, 0..1);
+            draw_tiles(&mut pass, (pipeline, group), None);
         }
         if let Some(cracks) = cracks {
             cracks.draw_ink(&mut pass);

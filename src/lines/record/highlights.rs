@@ -31,7 +31,7 @@ use crate::{
         passes::LinePasses,
         prepare::ViewLines,
         request::{LinePassUniform, LineRequest},
-        tiles::{TileList, tile_shader, vertices},
+        tiles::{TileList, draw_tiles, tile_shader, vertices},
     },
     objects::{HighlightStyleBuffer, object_styles_entry},
 };
@@ -178,10 +178,6 @@ pub(crate) fn draw_highlights<const LATE: bool>(
         });
     let [x, y, width, height] = request.view.viewport.as_vec4().to_array();
     pass.set_viewport(x, y, width, height, 0.0, 1.0);
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    match tiles {
-        Some(tiles) => tiles.draw(&mut pass, TileList::Inked),
-        None => pass.draw(0..3, 0..1),
-    }
+    let tiles = tiles.map(|tiles| (tiles, TileList::Inked));
+    draw_tiles(&mut pass, (pipeline, &group), tiles);
 }

@@ -10,7 +10,7 @@ use bevy::render::{
 
 use super::{
     ready::{Ready, ReadyCells, ReadyCracks, ReadyFind, ReadyStrokes},
-    sources::{NOT_READY, Reads, Sources, Texels},
+    sources::{NOT_READY, Sources, Texels},
 };
 use crate::{
     bind_groups::Binder,
@@ -18,11 +18,12 @@ use crate::{
     diagnostics::SkipReason,
     gpu::entry,
     lines::{
-        cracks::CrackStore,
+        cracks::{CrackBuffers, CrackStore, LineDensities},
         find::Resolved,
-        history::{HistoryKey, LineHistory},
+        history::LineHistory,
         key::LineKey,
         passes::{CrackPasses, FindPass, LinePasses},
+        pipelines::{LinePass, SearchPass},
         prepare::{Cracks, Tiles, ViewLines},
         request::LineRequest,
     },
@@ -52,26 +53,26 @@ impl Inputs<'_> {
     fn render(
         &self,
         id: CachedRenderPipelineId,
-        layout: &BindGroupLayoutDescriptor,
+        pass: LinePass,
         entries: &[BindGroupEntry],
     ) -> Result<Ready<'_, RenderPipeline>, SkipReason> {
         let pipeline = self.binder.cache.get_render_pipeline(id).ok_or(NOT_READY)?;
-        Ok((pipeline, self.group(layout, entries)?))
+        let layout = pass.layout(pass.part(self.passes.key));
+        Ok((pipeline, self.group(&layout, entries)?))
     }
 
-    /// A compute pass that binds the uniform and these entries.
-    pub(super) fn compute(
-        &self,
-        id: CachedComputePipelineId,
-        layout: &BindGroupLayoutDescriptor,
-        entries: &[BindGroupEntry],
-    ) -> Result<Ready<'_, ComputePipeline>, SkipReason> {
-        let pipeline = self
-            .binder
-            .cache
-            .get_compute_pipeline(id)
-            .ok_or(NOT_READY)?;
-        Ok((pipeline, self.group(layout, entries)?))
+    /// A compute pass that binds the uniform, these entries, and what it reads of the scene.
+    fn compute<'a>(
+        &'a self,
+        (pass, id): (SearchPass, CachedComputePipelineId),
+        mut entries: Vec<BindGroupEntry<'a>>,
+    ) -> Result<Ready<'a, ComputePipeline>, SkipReason> {
+        let pipeline = self.binder.cache.get_compute_pipeline(id);
+        entries.extend(self.entries(pass.key())?);
+        Ok((
+            pipeline.ok_or(NOT_READY)?,
+            self.group(&pass.layout(), &entries)?,
+        ))
     }
 
     fn group(
@@ -103,7 +104,7 @@ impl Inputs<'_> {
     }
 
     /// The textures that lines are found in.
-    pub(super) fn texels(&self) -> Result<Texels<'_>, SkipReason> {
+    fn texels(&self) -> Result<Texels<'_>, SkipReason> {
         match &self.lines.resolved {
             Some(resolved) => Ok(resolved.into()),
             None => self.prepass(),
@@ -112,17 +113,16 @@ impl Inputs<'_> {
 
     /// The pass that picks one sample of every pixel, if the view is multisampled.
     pub fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, SkipReason> {
-        let (Some((key, id)), Some(resolved)) = (&self.passes.resolve, &self.lines.resolved) else {
+        let (Some(id), Some(resolved)) = (self.passes.resolve, &self.lines.resolved) else {
             return Ok(None);
         };
-        let reads = Reads {
-            normals: key.normals,
-            ids: key.ids,
-            widths: key.widths,
+        let pass = LinePass::Resolve {
+            samples: self.request.samples,
         };
         let mut entries = vec![];
-        self.prepass()?.push(reads, &mut entries)?;
-        Ok(Some((resolved, self.render(*id, &key.layout(), &entries)?)))
+        let key = pass.part(self.passes.key);
+        self.prepass()?.push(key, &mut entries)?;
+        Ok(Some((resolved, self.render(id, pass, &entries)?)))
     }
 
     /// The pass that mixes the ink with that of the frames before, if lines have a history.
@@ -132,14 +132,13 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let motion = self.sources.motion.ok_or(NOT_READY)?;
-        let mut entries = vec![
-            entry(23, (&ink.default_view).into_binding()),
-            entry(24, motion.into_binding()),
-        ];
-        self.prepass()?.push(Reads::default(), &mut entries)?;
+        let pass = LinePass::Accumulate {
+            tiled: self.passes.are_tiles_complete(),
+        };
+        let mut entries = self.entries(pass.part(self.passes.key))?;
+        entries.extend([texture_entry(23, ink), entry(24, motion.into_binding())]);
         entries.extend(history.entries());
-        let ready = self.render(id, &HistoryKey::layout(), &entries)?;
-        Ok(Some((history, ready)))
+        Ok(Some((history, self.render(id, pass, &entries)?)))
     }
 
     /// The pass that draws the faithful equations, if there are any.
@@ -147,23 +146,17 @@ impl Inputs<'_> {
         let Some(id) = self.passes.faithful else {
             return Ok(None);
         };
-        let key = self.passes.key.for_faithful();
-        let entries = self.entries(key)?;
-        Ok(Some(self.render(id, &key.faithful_layout(), &entries)?))
+        let entries = self.entries(self.passes.key.for_faithful())?;
+        Ok(Some(self.render(id, LinePass::Faithful, &entries)?))
     }
 
     /// What the pass of a part of a key binds of the scene, see [`LineKey`]'s layouts.
-    pub(super) fn entries(&self, key: LineKey) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
+    fn entries(&self, key: LineKey) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
         let mut entries = vec![];
         if !key.contains(LineKey::DEPTH) {
             return Ok(entries);
         }
-        let reads = Reads {
-            normals: key.contains(LineKey::NORMALS),
-            ids: key.contains(LineKey::OBJECT_IDS),
-            widths: key.contains(LineKey::WIDTH_MAP),
-        };
-        self.texels()?.push(reads, &mut entries)?;
+        self.texels()?.push(key, &mut entries)?;
         if key.intersects(LineKey::RANGE) {
             let keys = self.range.and_then(ViewDepthRange::drawn);
             entries.push(entry(3, keys.ok_or(NOT_READY)?.as_entire_binding()));
@@ -197,20 +190,19 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let key = self.passes.key.for_walk();
-        let mut walked = self.entries(key)?;
-        walked.push(texture_entry(10, &tiles.blocks));
+        let mut walked = vec![texture_entry(10, &tiles.blocks)];
         if key.contains(LineKey::CRACKS) {
             walked.extend(tiles.lists.cell_entries());
         }
         let mut listed = vec![texture_entry(12, &tiles.blocks)];
         listed.extend(tiles.lists.entries());
         Ok(Some([
-            self.compute(walk, &key.walk_layout(), &walked)?,
-            self.compute(list, &LineKey::tiles_layout(), &listed)?,
+            self.compute((SearchPass::Walk(key), walk), walked)?,
+            self.compute((SearchPass::Tiles, list), listed)?,
         ]))
     }
 
-    pub(super) fn tiles(&self) -> Result<&Tiles, SkipReason> {
+    fn tiles(&self) -> Result<&Tiles, SkipReason> {
         self.lines.tiles.as_ref().ok_or(NOT_READY)
     }
 
@@ -220,58 +212,93 @@ impl Inputs<'_> {
         passes: &CrackPasses,
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, SkipReason> {
-        let key = self.passes.key.for_find();
-        let find = self.find_pass(passes.find, key, cracks)?;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
-                let layout = self.passes.key.for_columns().columns_layout();
                 let stored = cracks.store.entries(self.request.copies());
-                Some((self.render(id, &layout, &stored)?, columns))
+                Some((self.render(id, LinePass::Columns, &stored)?, columns))
             }
             _ => None,
         };
         Ok(ReadyCracks {
             tiles: self.lines.tiles.as_ref().map(|tiles| &tiles.lists),
             columns,
-            find,
+            find: self.find_pass(&passes.find, cracks)?,
             ink: self.draw_pass(passes.draw, cracks)?,
             strokes: self.strokes_pass(passes, cracks)?,
         })
     }
 
-    /// The pass that finds cracks.
+    /// The passes that find cracks.
     fn find_pass<'a>(
         &'a self,
-        pass: FindPass,
-        key: LineKey,
+        pass: &FindPass,
         cracks: &'a Cracks,
     ) -> Result<ReadyFind<'a>, SkipReason> {
-        let mut entries = self.entries(key)?;
         match (pass, &cracks.store) {
             (FindPass::Pixels(id), CrackStore::Texture(texture)) => {
-                let ready = self.render(id, &key.find_layout(), &entries)?;
+                let entries = self.entries(self.passes.key.for_find())?;
+                let ready = self.render(*id, LinePass::Find, &entries)?;
                 Ok(ReadyFind::Pixels(ready, texture))
             }
             (FindPass::Cells(passes), CrackStore::Buffers(buffers)) => {
-                let lists = &self.tiles()?.lists;
-                entries.extend(lists.cell_entries());
-                entries.extend(buffers.cell_entries());
-                Ok(ReadyFind::Cells(Box::new(ReadyCells {
-                    lists,
+                let mut copies = 0;
+                let ready = passes.iter().map(|(pass, id)| {
+                    let entries = self.cell_entries(*pass, (cracks, buffers), &mut copies)?;
+                    Ok((*pass, self.compute((*pass, *id), entries)?))
+                });
+                Ok(ReadyFind::Cells(ReadyCells {
+                    passes: ready.collect::<Result<_, SkipReason>>()?,
+                    lists: &self.tiles()?.lists,
                     buffers,
-                    find: self.compute(passes.find, &key.cells_layout(), &entries)?,
-                    link: self.link_passes(&passes, buffers)?,
-                    join: self.join_pass(&passes, buffers)?,
-                    hold: self.hold_pass(&passes, buffers)?,
-                    close_gaps: self.gaps_pass(&passes, buffers)?,
-                    measure: self.measure_passes(&passes, cracks, buffers)?,
-                    corners: self.corners_pass(&passes, buffers)?,
-                    settle: self.settle_pass(&passes, cracks, buffers)?,
-                    ends: self.ends_pass(&passes, cracks)?,
-                })))
+                    densities: cracks.densities.as_ref(),
+                    holds: self.lines.holds.as_ref(),
+                }))
             }
             _ => Err(NOT_READY),
         }
+    }
+
+    /// What a pass over the cells with cracks binds besides the scene. `copies`: passes so far that
+    /// copy the planes of cracks and add to them.
+    fn cell_entries<'a>(
+        &'a self,
+        pass: SearchPass,
+        (cracks, buffers): (&'a Cracks, &'a CrackBuffers),
+        copies: &mut usize,
+    ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
+        let densities = cracks.densities.as_ref().map(LineDensities::entry);
+        let mut entries = self.tiles()?.lists.cell_entries().to_vec();
+        match pass {
+            SearchPass::Link { .. } | SearchPass::Join => {
+                entries.extend(buffers.link_entries(*copies % 2));
+                *copies += 1;
+            }
+            SearchPass::Hold(_) => {
+                let holds = self.lines.holds.as_ref().ok_or(NOT_READY)?;
+                entries.push(buffers.written_planes(*copies));
+                entries.extend(holds.entries());
+            }
+            SearchPass::CloseGaps => {
+                entries.extend(buffers.gaps_entries(*copies % 2));
+                *copies += 1;
+            }
+            // It runs for the whole grid.
+            SearchPass::Measure { .. } => {
+                entries = vec![buffers.planes_entry(*copies), densities.ok_or(NOT_READY)?];
+            }
+            SearchPass::Corners => entries.push(buffers.written_planes(*copies)),
+            SearchPass::Settle(_) => {
+                entries.extend(buffers.settle_entries(*copies));
+                entries.extend(densities);
+            }
+            SearchPass::Ends(_) => {
+                let strokes = cracks.strokes.as_ref().ok_or(NOT_READY)?;
+                entries.extend(cracks.store.entries(*copies));
+                entries.push(strokes.entry());
+            }
+            _ => entries.extend(buffers.cell_entries()),
+        }
+        Ok(entries)
     }
 
     /// The pass that draws the ink of cracks.
@@ -296,7 +323,7 @@ impl Inputs<'_> {
         if key.contains(LineKey::OBJECT_IDS) {
             entries.push(self.ids()?);
         }
-        self.render(id, &key.draw_layout(), &entries)
+        self.render(id, LinePass::Draw, &entries)
     }
 
     /// The pass that draws strokes beyond loose ends, if there is one.
@@ -313,7 +340,7 @@ impl Inputs<'_> {
             .contains(LineKey::OBJECT_IDS)
             .then(|| self.ids())
             .transpose()?;
-        let ready = self.render(id, &key.strokes_layout(), ids.as_slice())?;
+        let ready = self.render(id, LinePass::Strokes, ids.as_slice())?;
         Ok(Some((ready, strokes)))
     }
 

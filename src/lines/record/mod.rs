@@ -1,6 +1,5 @@
 //! Records the passes of a view.
 
-mod completing;
 mod find_lines;
 mod highlights;
 mod inputs;

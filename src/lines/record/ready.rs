@@ -14,20 +14,15 @@ use crate::{
         cracks::{CrackBuffers, LineDensities},
         draw::StrokeList,
         history::LineHolds,
+        pipelines::SearchPass,
         request::{LineRequest, WORKGROUP, blocks},
         textures::cleared,
-        tiles::{TileList, TileLists},
+        tiles::{TileList, TileLists, draw_tiles},
     },
 };
 
 /// A pass that is ready to be recorded: its pipeline and bindings.
 pub(super) type Ready<'a, P> = (&'a P, BindGroup);
-
-/// The pass that keeps the lines of the last frames, ready to be recorded.
-pub(super) type ReadyHolds<'a> = (Ready<'a, ComputePipeline>, &'a LineHolds);
-
-/// The passes that measure how densely lines lie, ready to be recorded.
-pub(super) type ReadyDensities<'a> = ([Ready<'a, ComputePipeline>; 2], &'a LineDensities);
 
 /// The pass that draws strokes beyond loose ends, ready to be recorded.
 pub(super) type ReadyStrokes<'a> = (Ready<'a, RenderPipeline>, &'a StrokeList);
@@ -36,68 +31,40 @@ pub(super) type ReadyStrokes<'a> = (Ready<'a, RenderPipeline>, &'a StrokeList);
 pub(super) struct ReadyCells<'a> {
     pub lists: &'a TileLists,
     pub buffers: &'a CrackBuffers,
-    pub find: Ready<'a, ComputePipeline>,
-    pub link: Vec<Ready<'a, ComputePipeline>>,
-    pub join: Option<Ready<'a, ComputePipeline>>,
-    pub hold: Option<ReadyHolds<'a>>,
-    pub close_gaps: Option<Ready<'a, ComputePipeline>>,
-    pub measure: Option<ReadyDensities<'a>>,
-    pub corners: Option<Ready<'a, ComputePipeline>>,
-    pub settle: Option<Ready<'a, ComputePipeline>>,
-    pub ends: Option<Ready<'a, ComputePipeline>>,
+    pub densities: Option<&'a LineDensities>,
+    pub holds: Option<&'a LineHolds>,
+    pub passes: Vec<(SearchPass, Ready<'a, ComputePipeline>)>,
 }
 
 impl ReadyCells<'_> {
     fn record(&self, encoder: &mut CommandEncoder) {
         self.buffers.clear(encoder);
-        self.dispatch(encoder, "comics_find_in_cells", &self.find);
-        for (i, link) in self.link.iter().enumerate() {
-            self.buffers.copy_planes(encoder, i % 2);
-            self.dispatch(encoder, "comics_link_lines", link);
+        // Copies of the planes so far.
+        let mut copies = 0;
+        for (pass, (pipeline, group)) in &self.passes {
+            match (pass, self.holds) {
+                (SearchPass::Link { .. } | SearchPass::Join | SearchPass::CloseGaps, _) => {
+                    self.buffers.copy_planes(encoder, copies % 2);
+                    copies += 1;
+                }
+                (SearchPass::Hold(_), Some(holds)) => holds.clear(encoder),
+                (SearchPass::Corners, _) => self.buffers.clear_corners(encoder, copies),
+                _ => {}
+            }
+            let mut compute = compute_pass(encoder, pass.label(), (pipeline, group), &[]);
+            match (pass, self.densities) {
+                (SearchPass::Measure { coarse }, Some(densities)) => {
+                    densities.dispatch(&mut compute, *coarse);
+                }
+                _ => self.lists.dispatch_cells(&mut compute),
+            }
         }
-        if let Some(join) = &self.join {
-            self.buffers.copy_planes(encoder, self.link.len() % 2);
-            self.dispatch(encoder, "comics_join_lines", join);
-        }
-        let mut copies = self.link.len() + usize::from(self.join.is_some());
-        if let Some((hold, holds)) = &self.hold {
-            holds.clear(encoder);
-            self.dispatch(encoder, "comics_hold_lines", hold);
-        }
-        if let Some(close_gaps) = &self.close_gaps {
-            self.buffers.copy_planes(encoder, copies % 2);
-            self.dispatch(encoder, "comics_close_gaps", close_gaps);
-            copies += 1;
-        }
-        if let Some((passes, densities)) = &self.measure {
-            densities.measure(encoder, passes);
-        }
-        if let Some(corners) = &self.corners {
-            self.buffers.clear_corners(encoder, copies);
-            self.dispatch(encoder, "comics_line_corners", corners);
-        }
-        if let Some(settle) = &self.settle {
-            self.dispatch(encoder, "comics_settle_lines", settle);
-        }
-        if let Some(ends) = &self.ends {
-            self.dispatch(encoder, "comics_line_ends", ends);
-        }
-    }
-
-    fn dispatch(
-        &self,
-        encoder: &mut CommandEncoder,
-        label: &str,
-        (pipeline, group): &Ready<ComputePipeline>,
-    ) {
-        let mut pass = compute_pass(encoder, label, (pipeline, group), &[]);
-        self.lists.dispatch_cells(&mut pass);
     }
 }
 
 /// The passes that find cracks, ready to be recorded.
 pub(super) enum ReadyFind<'a> {
-    Cells(Box<ReadyCells<'a>>),
+    Cells(ReadyCells<'a>),
     /// Draws them into a texture.
     Pixels(Ready<'a, RenderPipeline>, &'a CachedTexture),
 }
@@ -115,15 +82,13 @@ impl ReadyCracks<'_> {
     /// Finds the cracks.
     pub fn find(&self, encoder: &mut CommandEncoder) {
         match &self.find {
-            ReadyFind::Pixels((pipeline, group), texture) => {
+            ReadyFind::Pixels(ready, texture) => {
                 let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
                     label: Some("comics_find_lines"),
                     color_attachments: &[Some(cleared(texture))],
                     ..Default::default()
                 });
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.draw(0..3, 0..1);
+                draw_tiles(&mut pass, (ready.0, &ready.1), None);
             }
             ReadyFind::Cells(cells) => cells.record(encoder),
         }
@@ -162,12 +127,8 @@ impl ReadyCracks<'_> {
         (pipeline, group): &Ready<RenderPipeline>,
         list: TileList,
     ) {
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[]);
-        match self.tiles {
-            Some(tiles) => tiles.draw(pass, list),
-            None => pass.draw(0..3, 0..1),
-        }
+        let tiles = self.tiles.map(|tiles| (tiles, list));
+        draw_tiles(pass, (pipeline, group), tiles);
     }
 }
 

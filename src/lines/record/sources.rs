@@ -11,7 +11,7 @@ use crate::{
     depth::surfaces::{SurfaceParts, Surfaces},
     diagnostics::SkipReason,
     gpu::entry,
-    lines::find::Resolved,
+    lines::{find::Resolved, key::LineKey},
     objects::{ObjectDepths, ViewLineWidths, ViewObjectIds},
 };
 
@@ -82,14 +82,6 @@ pub(super) struct Texels<'a> {
     pub widths: Option<&'a TextureView>,
 }
 
-/// Which textures a pass reads besides the depth.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Reads {
-    pub normals: bool,
-    pub ids: bool,
-    pub widths: bool,
-}
-
 impl<'a> From<&'a Resolved> for Texels<'a> {
     fn from(resolved: &'a Resolved) -> Self {
         let view = |texture: &'a CachedTexture| &texture.default_view;
@@ -103,24 +95,22 @@ impl<'a> From<&'a Resolved> for Texels<'a> {
 }
 
 impl<'a> Texels<'a> {
-    /// Adds the bindings: the depth, and what else is read.
+    /// Adds the bindings: the depth, and what else the pass of a part of a key reads.
     pub fn push(
         self,
-        reads: Reads,
+        key: LineKey,
         entries: &mut Vec<BindGroupEntry<'a>>,
     ) -> Result<(), SkipReason> {
         entries.push(entry(2, self.depth.into_binding()));
-        if reads.normals {
-            let normal = self.normal.ok_or(NOT_READY)?;
-            entries.push(entry(7, normal.into_binding()));
-        }
-        if reads.ids {
-            let ids = self.ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, ids.into_binding()));
-        }
-        if reads.widths {
-            let widths = self.widths.ok_or(NOT_READY)?;
-            entries.push(entry(9, widths.into_binding()));
+        for (flag, binding, texture) in [
+            (LineKey::NORMALS, 7, self.normal),
+            (LineKey::OBJECT_IDS, 8, self.ids),
+            (LineKey::WIDTH_MAP, 9, self.widths),
+        ] {
+            if key.contains(flag) {
+                let texture = texture.ok_or(NOT_READY)?;
+                entries.push(entry(binding, texture.into_binding()));
+            }
         }
         Ok(())
     }

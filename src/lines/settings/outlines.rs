@@ -355,24 +355,22 @@ impl Outlines {
         self.creases.as_ref().is_some_and(by_normals)
     }
 
+    /// The equations of silhouettes and of creases, if there are any.
+    pub(crate) fn equations(&self) -> [Option<Equations>; 2] {
+        [
+            self.silhouettes.map(|s| s.equations),
+            self.creases.map(|c| c.equations),
+        ]
+    }
+
     /// Whether any kind has the faithful equations, whose ink is not found along cracks.
     pub(crate) fn has_faithful(&self) -> bool {
-        self.silhouettes
-            .is_some_and(|s| s.equations == Equations::Faithful)
-            || self
-                .creases
-                .is_some_and(|c| c.equations == Equations::Faithful)
+        self.equations().contains(&Some(Equations::Faithful))
     }
 
     /// Whether any kind uses `width`. The faithful lines have their own width.
     pub(crate) fn has_wide_lines(&self) -> bool {
-        self.objects.is_some()
-            || self
-                .silhouettes
-                .is_some_and(|s| s.equations != Equations::Faithful)
-            || self
-                .creases
-                .is_some_and(|c| c.equations != Equations::Faithful)
+        self.objects.is_some() || self.equations().contains(&Some(Equations::Corrected))
     }
 
     /// Distance in physical pixels within which lines are searched around a pixel. `scale` is

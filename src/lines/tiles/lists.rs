@@ -8,8 +8,8 @@ use bevy::{
     mesh::VertexBufferLayout,
     render::{
         render_resource::{
-            BindGroupEntry, Buffer, BufferUsages, PrimitiveState, PrimitiveTopology, VertexFormat,
-            VertexState, VertexStepMode,
+            BindGroup, BindGroupEntry, Buffer, BufferUsages, PrimitiveState, PrimitiveTopology,
+            RenderPipeline, VertexFormat, VertexState, VertexStepMode,
         },
         renderer::{RenderDevice, RenderQueue},
     },
@@ -148,7 +148,7 @@ impl TileLists {
         pass.dispatch_workgroups_indirect(&self.cell_counts, 0);
     }
 
-    /// Draws the tiles of a list with a pipeline of [`tile_vertices`].
+    /// Draws the tiles of a list with a pipeline of tiled [`vertices`].
     pub fn draw(&self, pass: &mut wgpu::RenderPass, list: TileList) {
         let list = list as u64;
         let first = RECTANGLE * u64::from(self.room) * list;
@@ -157,24 +157,23 @@ impl TileLists {
     }
 }
 
+/// Draws the tiles of a list, or all pixels.
+pub(crate) fn draw_tiles(
+    pass: &mut wgpu::RenderPass,
+    (pipeline, group): (&RenderPipeline, &BindGroup),
+    tiles: Option<(&TileLists, TileList)>,
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    match tiles {
+        Some((tiles, list)) => tiles.draw(pass, list),
+        None => pass.draw(0..3, 0..1),
+    }
+}
+
 /// The vertex shader of tiles.
 pub(crate) fn tile_shader(assets: &AssetServer) -> Handle<Shader> {
     load_embedded_asset!(assets, "tile.wgsl")
-}
-
-/// The vertices of the passes that draw tiles, as strips of triangles. `shader`:
-/// `tile.wgsl`.
-fn tile_vertices(shader: Handle<Shader>) -> VertexState {
-    let rectangle = [VertexFormat::Float32x4];
-    VertexState {
-        shader,
-        shader_defs: vec![],
-        entry_point: Some("tile".into()),
-        buffers: vec![VertexBufferLayout::from_vertex_formats(
-            VertexStepMode::Instance,
-            rectangle,
-        )],
-    }
 }
 
 /// The vertices of a pass that draws tiles, or all pixels, and how they are connected. `tile`:
@@ -185,10 +184,15 @@ pub(crate) fn vertices(
     tile: &Handle<Shader>,
 ) -> (VertexState, PrimitiveState) {
     let (vertex, topology) = if tiled {
-        (
-            tile_vertices(tile.clone()),
-            PrimitiveTopology::TriangleStrip,
-        )
+        let rectangle = [VertexFormat::Float32x4];
+        let step = VertexStepMode::Instance;
+        let vertex = VertexState {
+            shader: tile.clone(),
+            shader_defs: vec![],
+            entry_point: Some("tile".into()),
+            buffers: vec![VertexBufferLayout::from_vertex_formats(step, rectangle)],
+        };
+        (vertex, PrimitiveTopology::TriangleStrip)
     } else {
         let vertex = fullscreen.to_vertex_state();
         (vertex, PrimitiveTopology::TriangleList)

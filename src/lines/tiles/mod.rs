@@ -2,4 +2,4 @@
 
 mod lists;
 
-pub(crate) use lists::{TileList, TileLists, tile_shader, vertices};
+pub(crate) use lists::{TileList, TileLists, draw_tiles, tile_shader, vertices};
