@@ -4,7 +4,10 @@
 use std::ops::Range;
 
 #[cfg(feature = "objects")]
-use bevy::render::{render_resource::RawBufferVec, renderer::RenderQueue};
+use bevy::render::{
+    render_resource::{RawBufferVec, RenderPassDepthStencilAttachment},
+    renderer::RenderQueue,
+};
 use bevy::{
     image::ToExtents,
     math::UVec2,
@@ -83,6 +86,20 @@ pub(crate) fn attachment(
             load,
             store: StoreOp::Store,
         },
+    }
+}
+
+/// A depth texture that a pass draws to.
+#[cfg(feature = "objects")]
+pub(crate) fn depth_attachment(
+    view: &TextureView,
+    load: LoadOp<f32>,
+    store: StoreOp,
+) -> RenderPassDepthStencilAttachment<'_> {
+    RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(Operations { load, store }),
+        stencil_ops: None,
     }
 }
 

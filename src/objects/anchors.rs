@@ -44,35 +44,25 @@ impl Default for PatternAnchor {
     }
 }
 
-/// Where an object is.
-#[derive(Clone, Copy)]
-pub(super) struct Anchor {
-    center: Vec3,
-    rotation: Vec4,
-    size: f32,
-}
-
-impl Anchor {
-    /// `None` for an object without an extent, or not at a finite place.
-    pub fn new(screen: &PatternAnchor, at: &GlobalTransform) -> Option<Self> {
-        let offset = Some(screen.center).filter(|center| center.is_finite());
-        let center = at.transform_point(offset.unwrap_or_default());
-        let (scale, rotation, _) = at.to_scale_rotation_translation();
-        let size = scale.abs().element_product().cbrt();
-        let rotation = Vec4::from(rotation.normalize());
-        let is_sound = center.is_finite() && rotation.is_finite() && size.is_normal();
-        is_sound.then_some(Self {
-            center,
-            rotation,
-            size,
-        })
-    }
-
-    pub fn put(self, style: &mut ObjectStyleUniform) {
-        style.anchor_center = self.center;
-        style.anchor_rotation = self.rotation;
-        style.anchor_size = self.size;
-    }
+/// A style whose screens follow an object; `None` for an object without an extent, or not at a
+/// finite place.
+pub(super) fn anchored_style(
+    anchor: &PatternAnchor,
+    at: &GlobalTransform,
+    style: ObjectStyleUniform,
+) -> Option<ObjectStyleUniform> {
+    let offset = Some(anchor.center).filter(|center| center.is_finite());
+    let center = at.transform_point(offset.unwrap_or_default());
+    let (scale, rotation, _) = at.to_scale_rotation_translation();
+    let size = scale.abs().element_product().cbrt();
+    let rotation = Vec4::from(rotation.normalize());
+    let is_sound = center.is_finite() && rotation.is_finite() && size.is_normal();
+    is_sound.then_some(ObjectStyleUniform {
+        anchor_center: center,
+        anchor_rotation: rotation,
+        anchor_size: size,
+        ..style
+    })
 }
 
 /// The component and where its object is.

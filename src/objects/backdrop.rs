@@ -43,12 +43,6 @@ pub struct Backdrop {
     pub inherit: bool,
 }
 
-impl Default for Backdrop {
-    fn default() -> Self {
-        Self { inherit: true }
-    }
-}
-
 /// The meshes of backdrops.
 pub(crate) type Backdrops = Values<Backdrop, ()>;
 

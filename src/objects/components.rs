@@ -5,7 +5,6 @@ use bevy::{
     ecs::{
         change_detection::DetectChanges,
         component::Component,
-        query::{AnyOf, Changed, Or},
         reflect::ReflectComponent,
         system::{Res, ResMut},
     },
@@ -13,8 +12,8 @@ use bevy::{
 };
 
 use super::{
-    anchors::{Anchor, Anchored},
-    inherit::{Heritage, Inherited},
+    anchors::{Anchored, anchored_style},
+    inherit::{Either, Inherited},
     levels::Levels,
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
@@ -38,12 +37,6 @@ pub struct NoOutlines {
     pub inherit: bool,
 }
 
-impl Default for NoOutlines {
-    fn default() -> Self {
-        Self { inherit: true }
-    }
-}
-
 /// Takes this object out of the color effects: its colors stay as they were rendered.
 ///
 /// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) do not apply
@@ -57,12 +50,6 @@ pub struct NoStyle {
     /// Applies to all descendants as well, except for those with a `NoStyle` of their own.
     /// Default: `true`.
     pub inherit: bool,
-}
-
-impl Default for NoStyle {
-    fn default() -> Self {
-        Self { inherit: true }
-    }
 }
 
 /// Draws the lines of this object in another style than the camera's
@@ -151,27 +138,12 @@ impl OutlineStyle {
     }
 }
 
-/// Either component of outlines; `NoOutlines` counts if an entity has both.
-pub(crate) struct Outlined;
-
-type OutlineParts<'w> = (Option<&'w OutlineStyle>, Option<&'w NoOutlines>);
-
-impl Heritage for Outlined {
-    type Own = AnyOf<(&'static OutlineStyle, &'static NoOutlines)>;
-    type Changed = Or<(Changed<OutlineStyle>, Changed<NoOutlines>)>;
-
-    fn passes_on((style, none): &OutlineParts) -> bool {
-        match (style, none) {
-            (_, Some(none)) => none.inherit,
-            (style, None) => style.is_some_and(|style| style.inherit),
-        }
-    }
-}
+type Outlined = Either<NoOutlines, OutlineStyle>;
 
 /// The outlines of an object with one of the components.
-fn outlines((style, none): OutlineParts) -> ObjectStyleUniform {
-    match (style, none) {
-        (Some(style), None) => style.uniform(),
+fn outlines((none, style): (Option<&NoOutlines>, Option<&OutlineStyle>)) -> ObjectStyleUniform {
+    match (none, style) {
+        (None, Some(style)) => style.uniform(),
         _ => ObjectStyleUniform {
             kinds: 0,
             ..Default::default()
@@ -196,19 +168,13 @@ pub(crate) fn assign_object_styles(
     let style = |object| {
         let own = outlined.of(object).map(|(_, parts)| outlines(parts));
         let is_bare = unstyled.of(object).is_some();
-        let anchor = anchored.of(object);
-        let anchor = anchor.and_then(|(_, (screen, at))| Anchor::new(screen, at));
-        if own.is_none() && !is_bare && anchor.is_none() {
-            return None;
-        }
         let mut style = own.unwrap_or_default();
         if is_bare {
             style.kinds |= UNSTYLED;
         }
-        if let Some(anchor) = anchor {
-            anchor.put(&mut style);
-        }
-        Some(style)
+        let anchor = anchored.of(object);
+        let anchored = anchor.and_then(|(_, (anchor, at))| anchored_style(anchor, at, style));
+        anchored.or((own.is_some() || is_bare).then_some(style))
     };
     styles.assign(changed.iter().map(|object| (*object, style(*object))));
     if levels.is_changed() {

@@ -44,10 +44,10 @@ use super::{
     shared::Shared,
     simplification::{BY_DISTANCE, Simplifications},
 };
-use crate::bind_groups::Binder;
 use crate::{
+    bind_groups::Binder,
     depth::{DepthMapping, prepare::ViewDepthRange},
-    gpu::{Table, buffer, compute_pass, entry},
+    gpu::{Table, buffer, compute_pass, definitions, entry},
     schedule::{ComicsSystems, PrepareComics},
 };
 
@@ -275,7 +275,7 @@ fn extract_bounds(
 
 /// On a view whose effects treat objects as a whole: the pass that finds their depths.
 #[derive(Component)]
-struct ObjectDepthPass {
+pub(super) struct ObjectDepthPass {
     uniform: UniformBuffer<ObjectEye>,
     pipeline: CachedComputePipelineId,
     mapping: DepthMapping,
@@ -326,11 +326,7 @@ impl SpecializedComputePipeline for ObjectDepthPipeline {
             label: Some("comics_object_depths".into()),
             layout: vec![Self::layout(visible_range)],
             shader: self.shader.clone(),
-            shader_defs: if visible_range {
-                vec!["VISIBLE_RANGE".into()]
-            } else {
-                Vec::new()
-            },
+            shader_defs: definitions([(visible_range, "VISIBLE_RANGE")]).collect(),
             entry_point: Some("object_depth".into()),
             ..Default::default()
         }

@@ -2,11 +2,10 @@
 
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
-    ecs::{entity::Entity, system::Res, world::World},
+    ecs::{system::Res, world::World},
     log::error_once,
     render::{
         camera::ExtractedCamera,
-        render_phase::TrackedRenderPass,
         render_resource::{LoadOp, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
@@ -15,14 +14,15 @@ use bevy::{
 
 use super::{
     IdRequest, ViewLineWidths, ViewObjectIds,
-    depth_test::{DepthTest, TOLERANT, TolerantIds},
+    bindings::IdBindings,
+    depth_test::{DepthTest, TOLERANT},
     layer::{LayerRequest, ViewLayer},
     line_widths::width_attachment,
-    phase::{Layer, ObjectIdPhase, ObjectIdPhases},
+    phase::{Layer, ObjectIdPhases},
 };
 use crate::{
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    gpu::attachment,
+    gpu::{attachment, depth_attachment},
 };
 
 /// A view whose ids are drawn.
@@ -30,7 +30,7 @@ type Ids = (
     &'static IdRequest,
     &'static ViewObjectIds,
     Option<&'static ViewLineWidths>,
-    Option<&'static TolerantIds>,
+    Option<&'static IdBindings>,
 );
 
 /// Draws the object ids of a view.
@@ -62,9 +62,14 @@ pub(super) fn draw_object_ids(
         if let Some(viewport) = &viewport {
             render_pass.set_camera_viewport(viewport);
         }
-        render_layer(phase, &mut render_pass, (world, entity), layer)
+        let drawn = phase.render(&mut render_pass, (world, entity), layer);
+        drawn.map(|()| StageOutcome::Ran).map_err(|error| {
+            error_once!("the object ids were not drawn: {error:?}");
+            SkipReason::PipelineNotReady
+        })
     };
-    if let Some((request, target, widths, own)) = ids {
+    if let Some((request, target, widths, bindings)) = ids {
+        let own = bindings.and_then(|bindings| bindings.depth.as_ref());
         let targets = [
             Some(attachment(&target.view, LoadOp::default())),
             widths.map(width_attachment),
@@ -73,7 +78,10 @@ pub(super) fn draw_object_ids(
             label: Some("comics_object_ids"),
             color_attachments: &targets[..1 + usize::from(widths.is_some())],
             depth_stencil_attachment: Some(match own {
-                Some(own) => own.attachment(),
+                // Nothing reads it later.
+                Some(own) => {
+                    depth_attachment(&own.default_view, LoadOp::Clear(0.0), StoreOp::Discard)
+                }
                 None => depth.get_attachment(StoreOp::Store),
             }),
             ..Default::default()
@@ -92,22 +100,18 @@ pub(super) fn draw_object_ids(
     }
     if let Some((request, layer)) = layer {
         let targets = [Some(attachment(&layer.ids.default_view, LoadOp::default()))];
-        let outcome = draw(layer.pass(&targets), request.samples, Layer::Highlighted);
+        let pass = RenderPassDescriptor {
+            label: Some("comics_highlighted_objects"),
+            color_attachments: &targets,
+            depth_stencil_attachment: Some(depth_attachment(
+                &layer.depth.default_view,
+                LoadOp::Clear(0.0),
+                StoreOp::Store,
+            )),
+            ..Default::default()
+        };
+        let outcome = draw(pass, request.samples, Layer::Highlighted);
         let outcome = outcome.unwrap_or_else(StageOutcome::Skipped);
         ledger.set(request.camera, ComicsStage::HighlightedObjects, outcome);
     }
-}
-
-/// Draws the items of a layer.
-fn render_layer<'w>(
-    phase: &ObjectIdPhase,
-    pass: &mut TrackedRenderPass<'w>,
-    view: (&'w World, Entity),
-    layer: Layer,
-) -> Result<StageOutcome, SkipReason> {
-    let drawn = phase.render(pass, view, layer);
-    drawn.map(|()| StageOutcome::Ran).map_err(|error| {
-        error_once!("the object ids were not drawn: {error:?}");
-        SkipReason::PipelineNotReady
-    })
 }

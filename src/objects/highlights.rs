@@ -5,13 +5,8 @@ use bevy::{
     app::{App, PostUpdate},
     color::{Color, Srgba},
     ecs::{
-        component::Component,
-        entity::Entity,
-        query::{AnyOf, Changed, Or},
-        reflect::ReflectComponent,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::ResMut,
+        component::Component, entity::Entity, reflect::ReflectComponent, resource::Resource,
+        schedule::IntoScheduleConfigs, system::ResMut,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     render::sync_world::MainEntityHashSet,
@@ -19,7 +14,7 @@ use bevy::{
 
 use super::{
     changes::Follow,
-    inherit::{Heritage, Inherited, register},
+    inherit::{Either, Inherited, register},
     shared::Shared,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles, VISIBLE_ONLY},
 };
@@ -117,26 +112,20 @@ fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectS
 impl_sanitized!(SelectionOutline, XRayOutline);
 
 impl SelectionOutline {
-    fn line(self) -> (Color, f32, f32) {
-        (self.color, self.width, self.opacity)
-    }
-
     /// Only the border against other objects.
     fn uniform(self) -> ObjectStyleUniform {
         let visible = if self.occluded { 0 } else { VISIBLE_ONLY };
-        line_style(self.sanitized().line(), OBJECT_EDGES | visible)
+        let s = self.sanitized();
+        line_style((s.color, s.width, s.opacity), OBJECT_EDGES | visible)
     }
 }
 
 impl XRayOutline {
-    fn line(self) -> (Color, f32, f32) {
-        (self.color, self.width, self.opacity)
-    }
-
     /// Silhouettes and the border against other objects.
     fn uniform(self) -> ObjectStyleUniform {
         let kinds = SILHOUETTES | OBJECT_EDGES | HIDDEN_ONLY;
-        line_style(self.sanitized().line(), kinds)
+        let s = self.sanitized();
+        line_style((s.color, s.width, s.opacity), kinds)
     }
 }
 
@@ -164,32 +153,19 @@ impl Follow for HighlightedObjects {
     }
 }
 
-/// Either component; `SelectionOutline` counts if an entity has both.
-struct Highlighted;
-
-type HighlightParts<'w> = (Option<&'w SelectionOutline>, Option<&'w XRayOutline>);
-
-impl Heritage for Highlighted {
-    type Own = AnyOf<(&'static SelectionOutline, &'static XRayOutline)>;
-    type Changed = Or<(Changed<SelectionOutline>, Changed<XRayOutline>)>;
-
-    fn passes_on((selected, hidden): &HighlightParts) -> bool {
-        match (selected, hidden) {
-            (Some(selected), _) => selected.inherit,
-            (None, hidden) => hidden.is_some_and(|hidden| hidden.inherit),
-        }
-    }
-}
+type Highlight = Either<SelectionOutline, XRayOutline>;
 
 /// The lines of an object with one of the components; `None` if they are not seen.
-fn lines((selected, hidden): HighlightParts) -> Option<ObjectStyleUniform> {
+fn lines(
+    (selected, hidden): (Option<&SelectionOutline>, Option<&XRayOutline>),
+) -> Option<ObjectStyleUniform> {
     let hidden = || hidden.map(|hidden| hidden.uniform());
     let lines = selected.map(|selected| selected.uniform()).or_else(hidden);
     lines.filter(|lines| lines.opacity > 0.0)
 }
 
 fn assign_highlights(
-    mut highlighted: Inherited<Highlighted>,
+    mut highlighted: Inherited<Highlight>,
     (mut highlights, mut styles): (ResMut<HighlightedObjects>, ResMut<ObjectStyles>),
 ) {
     let changed = highlighted.update();

@@ -14,7 +14,7 @@ use bevy::{
         lifecycle::{Insert, Remove},
         message::{Message, MessageReader, MessageWriter},
         observer::On,
-        query::{Changed, QueryFilter, ROQueryItem, ReadOnlyQueryData},
+        query::{AnyOf, Changed, Or, QueryFilter, ROQueryItem, ReadOnlyQueryData},
         resource::Resource,
         system::{Local, Query, SystemParam},
     },
@@ -23,8 +23,8 @@ use bevy::{
 };
 
 use super::{
-    Backdrop, DepthWrite, LineWidths, NoStyle, ObjectSimplification, changes::Follow,
-    groups::DEEPEST, shared::Shared,
+    Backdrop, DepthWrite, LineWidths, NoOutlines, NoStyle, ObjectSimplification, OutlineStyle,
+    SelectionOutline, XRayOutline, changes::Follow, groups::DEEPEST, shared::Shared,
 };
 
 /// The entity got another parent or none, or lost a component that others inherit.
@@ -78,7 +78,22 @@ macro_rules! inherit_by_field {
     };
 }
 
-inherit_by_field! { Backdrop, DepthWrite, LineWidths, NoStyle, ObjectSimplification }
+inherit_by_field! {
+    Backdrop, DepthWrite, LineWidths, NoOutlines, NoStyle, ObjectSimplification, OutlineStyle,
+    SelectionOutline, XRayOutline
+}
+
+macro_rules! inherited_by_default {
+    ($($component:ty),*) => {
+        $(impl Default for $component {
+            fn default() -> Self {
+                Self { inherit: true }
+            }
+        })*
+    };
+}
+
+inherited_by_default! { Backdrop, LineWidths, NoOutlines, NoStyle }
 
 impl<C: Inherit> Heritage for C {
     type Own = &'static C;
@@ -86,6 +101,21 @@ impl<C: Inherit> Heritage for C {
 
     fn passes_on(own: &ROQueryItem<'_, '_, Self::Own>) -> bool {
         own.is_inherited()
+    }
+}
+
+/// Either of two components; the first counts if an entity has both.
+pub(crate) struct Either<A, B>(PhantomData<(A, B)>);
+
+impl<A: Inherit, B: Inherit> Heritage for Either<A, B> {
+    type Own = AnyOf<(&'static A, &'static B)>;
+    type Changed = Or<(Changed<A>, Changed<B>)>;
+
+    fn passes_on((first, second): &ROQueryItem<'_, '_, Self::Own>) -> bool {
+        match (first, second) {
+            (Some(first), _) => first.is_inherited(),
+            (None, second) => second.is_some_and(Inherit::is_inherited),
+        }
     }
 }
 

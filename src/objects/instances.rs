@@ -24,8 +24,7 @@ use bevy::{
 };
 
 use super::{
-    instance_buffers::InstanceBuffers,
-    phase::{Instance, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
+    phase::{Instance, InstanceBuffers, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::ObjectIdPipeline,
     sections::SectionBuffer,
 };
@@ -149,11 +148,6 @@ impl ObjectIdPhase {
             return None;
         }
         Some([self.buffers.records.buffer()?, sections.buffer()?])
-    }
-
-    /// What the passes bind; `None` without a mesh.
-    pub fn bind_group(&self) -> Option<&BindGroup> {
-        self.buffers.bound.as_ref()
     }
 
     fn upload(&mut self, device: &RenderDevice, queue: &RenderQueue) {

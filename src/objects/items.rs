@@ -37,13 +37,13 @@ use bevy::{
 
 use super::{
     backdrop::Backdrops,
-    depth_test::{DepthTest, TolerantIds},
+    bindings::IdBindings,
+    depth_test::DepthTest,
     lightmaps::MeshLightmaps,
-    line_widths::{WideMeshes, WidthBindings},
+    line_widths::WideMeshes,
     phase::{Bin, Layer, ObjectIdItem, ObjectIdPhase, ObjectIdPhases},
     pipeline::{
-        HighlightSpecializer, IdVariant, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
-        is_masked, reads_material,
+        IdVariant, ObjectIdPipeline, ObjectIdSpecializer, in_prepass, is_masked, reads_material,
     },
     sections::SectionStarts,
 };
@@ -52,30 +52,24 @@ pub(super) struct SetObjectTable<const I: usize>;
 
 impl<const I: usize> RenderCommand<ObjectIdItem> for SetObjectTable<I> {
     type Param = SRes<ObjectIdPhases>;
-    type ViewQuery = (
-        Read<ExtractedView>,
-        Option<Read<WidthBindings>>,
-        Option<Read<TolerantIds>>,
-    );
+    type ViewQuery = (Read<ExtractedView>, Option<Read<IdBindings>>);
     type ItemQuery = ();
 
     fn render<'w>(
         item: &ObjectIdItem,
-        (view, widths, tolerant): (
-            &'w ExtractedView,
-            Option<&'w WidthBindings>,
-            Option<&'w TolerantIds>,
-        ),
+        (view, own): (&'w ExtractedView, Option<&'w IdBindings>),
         _entity: Option<()>,
         phases: SystemParamItem<'w, '_, Self::Param>,
         pass: &mut TrackedRenderPass<'w>,
     ) -> RenderCommandResult {
         // Only the pipelines of ids draw widths, and compare depth with a tolerance.
-        let own = tolerant.map(|tolerant| &tolerant.bind_group);
-        let own = own.or(widths.map(|widths| &widths.group));
-        let bind_group = match own.filter(|_| item.bin.layer == Layer::Prepass) {
-            Some(own) => own.as_ref(),
-            None => phases.into_inner().bind_group(view.retained_view_entity),
+        let own = own.filter(|_| item.bin.layer == Layer::Prepass);
+        let bind_group = match own {
+            Some(own) => own.group.as_ref(),
+            None => {
+                let phase = phases.into_inner().views.get(&view.retained_view_entity);
+                phase.and_then(|phase| phase.buffers.bound.as_ref())
+            }
         };
         let Some(bind_group) = bind_group else {
             return RenderCommandResult::Skip;
@@ -237,7 +231,6 @@ pub(super) struct IdItems<'w> {
     drawn: DrawnMeshes<'w>,
     shared: Res<'w, ObjectIdPipeline>,
     pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
-    highlighted: ResMut<'w, SpecializedMeshPipelines<HighlightSpecializer>>,
     wide: Res<'w, WideMeshes>,
     test: Res<'w, DepthTest>,
     backdrops: Res<'w, Backdrops>,
@@ -286,33 +279,32 @@ impl IdItems<'_> {
         let key = drawn.material_key(drawn.mesh_key(view_key, uses_material));
         let (cache, layout) = (&self.cache, &drawn.mesh.layout);
         let specializer = self.shared.specializer(drawn.properties);
-        let mut ahead = None;
-        let (layer, pipeline) = match what {
+        let (layer, variant) = match what {
             Drawn::Highlighted => {
-                let key = (key, IdVariant::default());
-                let specializer = HighlightSpecializer(specializer);
-                let pipeline = self
-                    .highlighted
-                    .specialize(cache, &specializer, key, layout);
-                (Layer::Highlighted, pipeline)
+                let variant = IdVariant {
+                    highlighted: true,
+                    ..Default::default()
+                };
+                (Layer::Highlighted, variant)
             }
             Drawn::Ids { widths } => {
                 let variant = self.variant(entity.id(), &drawn, widths);
-                let mut specialize = |variant| {
-                    let key = (key.clone(), variant);
-                    self.pipelines.specialize(cache, &specializer, key, layout)
-                };
-                if self.test.compiles_ahead() {
-                    let tolerant = IdVariant {
-                        tolerant: true,
-                        ..variant
-                    };
-                    ahead = specialize(tolerant).ok();
-                }
-                (Layer::Prepass, specialize(variant))
+                (Layer::Prepass, variant)
             }
         };
-        let pipeline = pipeline
+        let mut specialize = |variant| {
+            let key = (key.clone(), variant);
+            self.pipelines.specialize(cache, &specializer, key, layout)
+        };
+        let mut ahead = None;
+        if layer == Layer::Prepass && self.test.compiles_ahead() {
+            let tolerant = IdVariant {
+                tolerant: true,
+                ..variant
+            };
+            ahead = specialize(tolerant).ok();
+        }
+        let pipeline = specialize(variant)
             .inspect_err(|error| error_once!("no object id for {entity:?}: {error}"))
             .map_err(|_| Missing::NotDrawn)?;
         let (bin, input) = self

@@ -10,10 +10,7 @@ use bevy::{
     },
     math::UVec2,
     render::{
-        render_resource::{
-            LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-            RenderPassDescriptor, StoreOp, TextureFormat, TextureUsages,
-        },
+        render_resource::{TextureFormat, TextureUsages},
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
@@ -36,28 +33,6 @@ pub(crate) struct LayerRequest {
 pub(crate) struct ViewLayer {
     pub depth: CachedTexture,
     pub ids: CachedTexture,
-}
-
-impl ViewLayer {
-    /// The pass that draws the layer. `targets`: that of the ids.
-    pub fn pass<'a>(
-        &'a self,
-        targets: &'a [Option<RenderPassColorAttachment<'a>>],
-    ) -> RenderPassDescriptor<'a> {
-        RenderPassDescriptor {
-            label: Some("comics_highlighted_objects"),
-            color_attachments: targets,
-            depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-                view: &self.depth.default_view,
-                depth_ops: Some(Operations {
-                    load: LoadOp::Clear(0.0),
-                    store: StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        }
-    }
 }
 
 /// Gets the textures of this frame from the engine's texture cache.

@@ -1,38 +1,21 @@
-//! Meshes whose vertices say how wide lines are, and the preparation of the texture that the
-//! pass of object ids draws their widths and the pressure into.
+//! Meshes whose vertices say how wide lines are, and the views whose widths of lines are drawn.
 
 use bevy::{
     color::LinearRgba,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{Or, With, Without},
-        reflect::ReflectComponent,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
-    },
+    ecs::{component::Component, reflect::ReflectComponent, resource::Resource, system::ResMut},
     platform::collections::HashSet,
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        render_resource::{
-            BindGroup, BindingResource, IntoBinding, LoadOp, RenderPassColorAttachment,
-            TextureUsages, TextureView, UniformBuffer,
-        },
-        renderer::RenderQueue,
-        texture::TextureCache,
-        view::{ExtractedView, RetainedViewEntity},
+        render_resource::{LoadOp, RenderPassColorAttachment},
+        view::RetainedViewEntity,
     },
 };
 
 use super::{
-    IdRequest, IdsWanted, ObjectStyles, Pressure, ViewLineWidths,
+    IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
     inherit::{Inherited, Values},
-    phase::ObjectIdPhases,
-    pipeline::{ObjectIdPipeline, with_prepass_depth},
-    sections::SectionBuffer,
-    widths::WIDTH_FORMAT,
 };
-use crate::{bind_groups::Binder, gpu};
+use crate::gpu;
 
 /// The alpha of this mesh's vertex colors
 /// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
@@ -63,12 +46,6 @@ pub struct LineWidths {
     pub inherit: bool,
 }
 
-impl Default for LineWidths {
-    fn default() -> Self {
-        Self { inherit: true }
-    }
-}
-
 /// The meshes with [`LineWidths`].
 pub(super) type WideMeshes = Values<LineWidths, ()>;
 
@@ -92,6 +69,10 @@ impl WidthViews {
         self.0.clear();
     }
 
+    pub fn contains(&self, view: RetainedViewEntity) -> bool {
+        self.0.contains(&view)
+    }
+
     /// Decides for a view. `wanted`: by the plan of its camera; `before`: the request of the
     /// last frame, whose plan may still be drawn.
     pub fn decide(
@@ -106,109 +87,6 @@ impl WidthViews {
             self.0.insert(view);
         }
         draws
-    }
-}
-
-/// On a view whose widths are drawn.
-#[derive(Component, Default)]
-pub(super) struct WidthBindings {
-    pressure: UniformBuffer<Pressure>,
-    /// What the pass binds instead of `ObjectIdPhase::bind_group`; `None` if there is no object.
-    pub group: Option<BindGroup>,
-}
-
-/// What binds the objects of a view.
-#[derive(SystemParam)]
-pub(super) struct Drawing<'w> {
-    queued: Res<'w, WidthViews>,
-    phases: Res<'w, ObjectIdPhases>,
-    sections: Res<'w, SectionBuffer>,
-    shared: Res<'w, ObjectIdPipeline>,
-    pub binder: Binder<'w>,
-    pub queue: Res<'w, RenderQueue>,
-}
-
-impl Drawing<'_> {
-    /// Whether the widths of a view are drawn.
-    pub fn draws_widths(&self, view: RetainedViewEntity) -> bool {
-        self.queued.0.contains(&view)
-    }
-
-    /// What the pass of object ids binds; `None` without an object. `pressure`: that
-    /// of its lines, if their widths are drawn; `depth`: that of the prepass, if depth is compared
-    /// with a tolerance.
-    pub fn bind_group(
-        &self,
-        (view, request): (RetainedViewEntity, &IdRequest),
-        pressure: Option<BindingResource>,
-        depth: Option<&TextureView>,
-    ) -> Option<BindGroup> {
-        let [objects, sections] = self.phases.views.get(&view)?.bound(&self.sections)?;
-        let mut entries = vec![
-            gpu::entry(0, objects.as_entire_binding()),
-            gpu::entry(1, sections.as_entire_binding()),
-        ];
-        let mut layout = if let Some(pressure) = pressure {
-            entries.push(gpu::entry(2, pressure));
-            self.shared.with_widths.clone()
-        } else {
-            self.shared.layout.clone()
-        };
-        if let Some(depth) = depth {
-            entries.push(gpu::entry(3, depth.into_binding()));
-            layout = with_prepass_depth(&layout, request.samples > 1);
-        }
-        Some(
-            self.binder
-                .group("comics_objects_of_view", &layout, &entries),
-        )
-    }
-}
-
-/// Views with widths that may no longer have them.
-type Stale = (
-    Or<(With<ViewLineWidths>, With<WidthBindings>)>,
-    Without<IdRequest>,
-);
-
-/// Gets the textures of this frame, and binds what is drawn into them.
-pub(super) fn prepare_line_widths(
-    mut commands: Commands,
-    mut views: Query<(
-        Entity,
-        &ExtractedView,
-        &IdRequest,
-        Option<&mut WidthBindings>,
-    )>,
-    stale: Query<Entity, Stale>,
-    drawing: Drawing,
-    mut textures: ResMut<TextureCache>,
-) {
-    for (entity, view, request, known) in &mut views {
-        let mut target = commands.entity(entity);
-        if !drawing.draws_widths(view.retained_view_entity) {
-            target.remove::<(ViewLineWidths, WidthBindings)>();
-            continue;
-        }
-        let mut bindings = known
-            .map(|mut known| std::mem::take(&mut *known))
-            .unwrap_or_default();
-        bindings.pressure.set(request.pressure.unwrap_or_default());
-        (bindings.pressure).write_buffer(&drawing.binder.device, &drawing.queue);
-        let view = view.retained_view_entity;
-        let pressure = bindings.pressure.binding();
-        bindings.group = drawing.bind_group((view, request), pressure, None);
-        let usage = TextureUsages::RENDER_ATTACHMENT
-            | TextureUsages::TEXTURE_BINDING
-            | TextureUsages::COPY_SRC;
-        let size = (request.size, request.samples);
-        let descriptor = gpu::texture("comics_line_widths", size, WIDTH_FORMAT, usage);
-        let texture = ViewLineWidths::from(textures.get(&drawing.binder.device, descriptor));
-        target.insert((texture, bindings));
-    }
-    for entity in &stale {
-        let mut target = commands.entity(entity);
-        target.remove::<(ViewLineWidths, WidthBindings)>();
     }
 }
 

@@ -1,11 +1,17 @@
 //! The service of objects: components that change or remove the lines of single
 //! objects, a texture of object ids, in which lines find where objects meet, and transparent
 //! meshes that take part in lines and effects.
+#![cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws ids")
+)]
 
 #[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
 mod backdrop;
+#[cfg(feature = "objects")]
+mod bindings;
 #[cfg(feature = "objects")]
 mod depth_test;
 #[cfg(feature = "objects")]
@@ -20,8 +26,6 @@ mod highlights;
 mod ids;
 #[cfg(feature = "objects")]
 mod inherit;
-#[cfg(feature = "objects")]
-mod instance_buffers;
 #[cfg(feature = "objects")]
 mod instances;
 #[cfg(feature = "objects")]
@@ -63,48 +67,37 @@ mod work;
 mod changes;
 #[cfg(feature = "objects")]
 mod components;
-#[cfg(feature = "objects")]
-pub use anchors::PatternAnchor;
-#[cfg(feature = "objects")]
-pub use backdrop::Backdrop;
-#[cfg(feature = "objects")]
-pub(crate) use backdrop::{BackdropBoxes, Backdrops, nearest_backdrop};
-#[cfg(feature = "objects")]
-pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
-#[cfg(feature = "objects")]
-pub use depth_test::ObjectIdDepthTest;
-#[cfg(feature = "objects")]
-pub use groups::{OutlineGroup, SplitPrimitives};
-#[cfg(feature = "objects")]
-pub(crate) use highlights::HighlightedObjects;
-#[cfg(feature = "objects")]
-pub use highlights::{SelectionOutline, XRayOutline};
-#[cfg(feature = "objects")]
-pub(crate) use layer::{LayerRequest, ViewLayer};
-#[cfg(feature = "objects")]
-pub(crate) use levels::{FadingMeshes, LevelPlaces, Levels};
-#[cfg(feature = "objects")]
-pub use line_widths::LineWidths;
-#[cfg(feature = "objects")]
-pub use object_ids::ObjectIds;
-#[cfg(feature = "objects")]
-pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections, MeshTasks};
-#[cfg(feature = "objects")]
-pub use simplification::ObjectSimplification;
-#[cfg(feature = "objects")]
-pub use transparent::DepthWrite;
-#[cfg(feature = "objects")]
-pub(crate) use transparent::DepthWrites;
-#[cfg(feature = "objects")]
-pub use work::ObjectWork;
 
+#[cfg(feature = "objects")]
+pub use self::{
+    anchors::PatternAnchor,
+    backdrop::Backdrop,
+    components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle},
+    depth_test::ObjectIdDepthTest,
+    groups::{OutlineGroup, SplitPrimitives},
+    highlights::{SelectionOutline, XRayOutline},
+    line_widths::LineWidths,
+    object_ids::ObjectIds,
+    sections::{ATTRIBUTE_MESH_SECTION, MeshSections, MeshTasks},
+    simplification::ObjectSimplification,
+    transparent::DepthWrite,
+    work::ObjectWork,
+};
+pub use widths::ViewLineWidths;
+
+#[cfg(feature = "objects")]
+pub(crate) use self::{
+    backdrop::{BackdropBoxes, Backdrops, nearest_backdrop},
+    highlights::HighlightedObjects,
+    layer::{LayerRequest, ViewLayer},
+    levels::{FadingMeshes, LevelPlaces, Levels},
+    sections::AllMeshes,
+    transparent::DepthWrites,
+};
 pub(crate) use object_depths::{
     OBJECT_DEPTHS_BINDING, ObjectDepthRequest, ObjectDepths, ObjectEye, object_depths_entry,
 };
-#[cfg(feature = "objects")]
-pub(crate) use sections::AllMeshes;
 pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
-pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
 
 use bevy::{
@@ -135,10 +128,6 @@ pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
 
 /// On a view in the render world: what the plan of its camera reads.
 #[derive(Component, Clone, Copy, Default)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws ids")
-)]
 pub(crate) struct IdsWanted {
     /// Object ids.
     pub ids: bool,
@@ -151,10 +140,6 @@ pub(crate) struct IdsWanted {
 /// On a view in the render world: the plan of its camera reads depth, and there are meshes with
 /// [`DepthWrite`](crate::objects::DepthWrite).
 #[derive(Component)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws them")
-)]
 pub(crate) struct DepthWanted {
     pub camera: Entity,
     /// The plan reads normals too.
@@ -164,10 +149,6 @@ pub(crate) struct DepthWanted {
 /// On a view in the render world that shows meshes with [`DepthWrite`](crate::objects::DepthWrite):
 /// what they are drawn into, besides its depth.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws them")
-)]
 pub(crate) struct QueuedDepth {
     pub ids: bool,
     pub normals: bool,
@@ -176,10 +157,6 @@ pub(crate) struct QueuedDepth {
 /// On a view in the render world: a request for object ids, written in every frame by
 /// [`PrepareComics::Choose`].
 #[derive(Component)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws ids")
-)]
 pub(crate) struct IdRequest {
     pub camera: Entity,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -194,10 +171,6 @@ pub(crate) struct IdRequest {
 /// The texture has the size and the number of samples of the depth texture. It can be
 /// another texture in every frame.
 #[derive(Component, Clone, Debug)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws ids")
-)]
 pub struct ViewObjectIds {
     /// `Rg16Uint`: red is the id of the object ([`ObjectIds`]; 0: no object). The low byte of
     /// green is the slot of the mesh's outline style (0: it has none), the high byte the

@@ -27,10 +27,6 @@ pub(crate) struct ObjectEye {
 /// On a view in the render world: a request for the depths of objects in the depth map, written in
 /// every frame by [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
 #[derive(Component, Clone, Copy, Debug)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` knows objects")
-)]
 pub(crate) struct ObjectDepthRequest {
     pub eye: ObjectEye,
     pub mapping: DepthMapping,

@@ -21,7 +21,8 @@ use bevy::{
     },
 };
 
-use super::{QueuedDepth, instance_buffers::InstanceBuffers, object_ids::ObjectIds};
+use super::{QueuedDepth, object_ids::ObjectIds};
+use crate::gpu::Table;
 
 /// A draw call.
 pub(crate) struct ObjectIdItem {
@@ -144,6 +145,20 @@ pub(super) struct PhaseKey {
     pub tolerant: bool,
     /// The pipelines that do so compile ahead of their use.
     pub compiles_ahead: bool,
+}
+
+/// The instances of a view on the GPU, in the order of its draw calls.
+#[derive(Default)]
+pub(crate) struct InstanceBuffers {
+    /// What the engine expands, as its `PreprocessWorkItem`s; empty where the CPU does it.
+    pub work: Table<2>,
+    /// The records of the instances, after as many unused ones as there are instances of other
+    /// passes before them.
+    pub records: Table<4>,
+    /// What the pass that expands them binds.
+    pub expansion: Option<BindGroup>,
+    /// What the passes that draw them bind.
+    pub bound: Option<BindGroup>,
 }
 
 /// The bins of a view.
@@ -303,13 +318,6 @@ pub(crate) struct ObjectIdPhases {
     pub views: HashMap<RetainedViewEntity, ObjectIdPhase>,
     /// How long the CPU took this frame to queue, batch and bind them.
     pub elapsed: Duration,
-}
-
-impl ObjectIdPhases {
-    /// What the passes of a view bind.
-    pub fn bind_group(&self, view: RetainedViewEntity) -> Option<&BindGroup> {
-        self.views.get(&view)?.bind_group()
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,5 @@
 //! The pipelines that draw the ids of objects.
 
-use std::ops::Deref;
-
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     ecs::{
@@ -15,6 +13,7 @@ use bevy::{
         PrepassFragmentShader, PrepassPipeline, PrepassPipelineSpecializer, PrepassVertexShader,
     },
     platform::sync::Arc,
+    prelude::Deref,
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, FragmentState,
@@ -31,7 +30,7 @@ use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
 use crate::gpu::{UNFILTERABLE, definitions, sampled};
 
 /// What all pipelines of this pass have in common.
-#[derive(Resource)]
+#[derive(Resource, Deref, Clone)]
 pub(super) struct ObjectIdPipeline(Arc<IdParts>);
 
 pub(super) struct IdParts {
@@ -115,6 +114,8 @@ pub(super) struct IdVariant {
     pub vertex_widths: bool,
     /// Depth is compared with a tolerance.
     pub tolerant: bool,
+    /// The mesh is drawn into the layer of highlighted objects, as if nothing else was there.
+    pub highlighted: bool,
 }
 
 impl IdVariant {
@@ -127,22 +128,10 @@ impl IdVariant {
     }
 }
 
-impl Deref for ObjectIdPipeline {
-    type Target = IdParts;
-
-    fn deref(&self) -> &IdParts {
-        &self.0
-    }
-}
-
 impl ObjectIdPipeline {
-    pub fn parts(&self) -> Arc<IdParts> {
-        self.0.clone()
-    }
-
     pub fn specializer(&self, properties: &Arc<MaterialProperties>) -> ObjectIdSpecializer {
         ObjectIdSpecializer {
-            ids: self.parts(),
+            ids: self.clone(),
             properties: properties.clone(),
         }
     }
@@ -160,7 +149,7 @@ impl IdParts {
 
 /// Made for every mesh, so it shares what only a new pipeline needs.
 pub(super) struct ObjectIdSpecializer {
-    ids: Arc<IdParts>,
+    ids: ObjectIdPipeline,
     properties: Arc<MaterialProperties>,
 }
 
@@ -172,18 +161,18 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         (key, variant): Self::Key,
         layout: &MeshVertexBufferLayoutRef,
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let IdParts {
-            shaders,
-            shades_samples,
-            ..
-        } = &*self.ids;
         let bindings = if variant.widths {
             &self.ids.with_widths
         } else {
             &self.ids.layout
         };
         let mut descriptor = (self.ids.prepass_of(&self.properties)).specialize(key, layout)?;
-        descriptor.label = Some("comics_object_ids".into());
+        let label = if variant.highlighted {
+            "comics_highlighted_objects"
+        } else {
+            "comics_object_ids"
+        };
+        descriptor.label = Some(label.into());
         let multisampled = descriptor.multisample.count > 1;
         descriptor.layout[1] = if variant.tolerant {
             with_prepass_depth(bindings, multisampled)
@@ -202,12 +191,12 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
         if variant.tolerant && multisampled {
             shader_defs.push("TOLERANT_MULTISAMPLED".into());
-            if *shades_samples {
+            if self.ids.shades_samples {
                 shader_defs.push("SAMPLE_SHADING".into());
             }
         }
         descriptor.fragment = Some(FragmentState {
-            shader: shaders[usize::from(variant.sections)].clone(),
+            shader: self.ids.shaders[usize::from(variant.sections)].clone(),
             shader_defs,
             entry_point: Some("object_id".into()),
             targets: (formats.iter())
@@ -215,33 +204,13 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
                 .collect(),
         });
         if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(variant.tolerant);
-            depth.depth_compare = Some(if variant.tolerant {
+            let has_own_depth = variant.tolerant || variant.highlighted;
+            depth.depth_write_enabled = Some(has_own_depth);
+            depth.depth_compare = Some(if has_own_depth {
                 CompareFunction::GreaterEqual
             } else {
                 CompareFunction::Equal
             });
-        }
-        Ok(descriptor)
-    }
-}
-
-/// The pipeline of a highlighted object: that of its id, with a depth test of its own.
-pub(super) struct HighlightSpecializer(pub ObjectIdSpecializer);
-
-impl SpecializedMeshPipeline for HighlightSpecializer {
-    type Key = (ErasedMaterialPipelineKey, IdVariant);
-
-    fn specialize(
-        &self,
-        key: Self::Key,
-        layout: &MeshVertexBufferLayoutRef,
-    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.0.specialize(key, layout)?;
-        descriptor.label = Some("comics_highlighted_objects".into());
-        if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(true);
-            depth.depth_compare = Some(CompareFunction::GreaterEqual);
         }
         Ok(descriptor)
     }

@@ -18,10 +18,12 @@ use bevy::{
 };
 
 use super::{
+    ObjectDepths, ViewLineWidths,
     backdrop::{Backdrops, remove_backdrops},
+    bindings::{IdBindings, prepare_id_bindings},
     changes::{self, NoteChanges, follow},
-    depth_test::{self, TolerantIds, count_ids},
-    depths,
+    depth_test::{self, IdCount, count_ids},
+    depths::{self, ObjectDepthPass},
     draw::draw_object_ids,
     groups::ObjectGroups,
     highlights::HighlightedObjects,
@@ -31,10 +33,10 @@ use super::{
     layer::prepare_layers,
     levels::Levels,
     lightmaps::{Lightmapped, extract_lightmapped},
-    line_widths::{WideMeshes, WidthBindings, WidthViews, prepare_line_widths},
+    line_widths::{WideMeshes, WidthViews},
     object_ids::{ObjectIds, begin_frame},
     phase::{ObjectIdItem, ObjectIdPhases},
-    pipeline::{HighlightSpecializer, ObjectIdSpecializer, init_object_id_pipeline},
+    pipeline::{ObjectIdSpecializer, init_object_id_pipeline},
     ranged::{RangedMeshes, extract_ranged_meshes},
     sections::{SectionBuffer, SectionStarts, extract_sections, prepare_sections},
     table::ObjectStyles,
@@ -49,7 +51,6 @@ pub(crate) fn build(app: &mut App) {
     };
     render_app
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
-        .init_gpu_resource::<SpecializedMeshPipelines<HighlightSpecializer>>()
         .init_resource::<HighlightedObjects>()
         .init_resource::<Levels>()
         .init_resource::<Backdrops>()
@@ -71,16 +72,23 @@ pub(crate) fn build(app: &mut App) {
     depths::build(render_app);
 }
 
+/// What views have that is bound to the device.
+type OfDevice = (
+    IdBindings,
+    IdCount,
+    ObjectDepthPass,
+    ObjectDepths,
+    ViewLineWidths,
+);
+
 /// Removes the buffers of views. This runs again after a lost device, whose buffers are no longer
 /// valid.
 fn forget_buffers(
     mut commands: Commands,
-    views: Query<Entity, Or<(With<WidthBindings>, With<TolerantIds>)>>,
+    views: Query<Entity, Or<(With<IdBindings>, With<IdCount>, With<ObjectDepths>)>>,
 ) {
     for view in &views {
-        commands
-            .entity(view)
-            .remove::<(WidthBindings, TolerantIds)>();
+        commands.entity(view).remove::<OfDevice>();
     }
 }
 
@@ -123,7 +131,7 @@ fn add_systems(render_app: &mut SubApp) {
                 bind_instances.in_set(RenderSystems::PrepareBindGroups),
                 (prepare_object_ids, prepare_layers, update_highlight_styles)
                     .in_set(PrepareComics::Services),
-                prepare_line_widths
+                prepare_id_bindings
                     .in_set(PrepareComics::Services)
                     .after(bind_instances),
             ),

@@ -1,16 +1,13 @@
 //! Values of entities, of which the render world has a copy.
 
-use bevy::ecs::entity::{Entity, EntityHashMap};
-#[cfg(feature = "objects")]
-use bevy::render::sync_world::{MainEntity, MainEntityHashSet};
+use bevy::{
+    ecs::entity::{Entity, EntityHashMap},
+    render::sync_world::{MainEntity, MainEntityHashSet},
+};
 
 /// The values that some entities have. The entities that changed last are kept, so that the copy
 /// follows without a look at the others.
 #[derive(Clone, Debug)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` sets values")
-)]
 pub(crate) struct Shared<V> {
     values: EntityHashMap<V>,
     /// The entities whose values changed in the last round of changes.
@@ -38,7 +35,6 @@ impl<V> Shared<V> {
     }
 }
 
-#[cfg(feature = "objects")]
 impl<V: Clone + PartialEq> Shared<V> {
     pub fn get(&self, entity: Entity) -> Option<&V> {
         self.values.get(&entity)
@@ -104,7 +100,7 @@ impl<V: Clone + PartialEq> Shared<V> {
     }
 }
 
-#[cfg(all(test, feature = "objects"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

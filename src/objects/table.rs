@@ -1,20 +1,20 @@
 //! The table of outline styles that shaders read, and the slot of each object in it.
 
-use super::shared::Shared;
-#[cfg(feature = "objects")]
 use bevy::{
-    ecs::entity::{Entity, EntityHashMap},
-    platform::collections::HashMap,
-    render::sync_world::MainEntityHashSet,
-};
-use bevy::{
-    ecs::resource::Resource,
+    ecs::{
+        entity::{Entity, EntityHashMap},
+        resource::Resource,
+    },
+    log::warn_once,
     math::{Vec3, Vec4},
+    platform::collections::HashMap,
     render::{
         render_resource::{Buffer, ShaderType, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},
     },
 };
+
+use super::shared::Shared;
 
 /// `ObjectStyle` of `objects.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,6 @@ impl Default for ObjectStyleUniform {
 
 /// Most outline styles that can be told apart: a slot is packed in 8 bits. Further ones
 /// are drawn like the last, with a warning.
-#[cfg(feature = "objects")]
 pub(crate) const MOST_STYLES: usize = 255;
 
 /// The objects that are drawn in another way than the others. Both worlds have a copy.
@@ -63,7 +62,6 @@ pub(crate) struct ObjectStyles {
     pub slots: Shared<u8>,
     /// The slots of objects while they have mostly faded to nothing: their styles, without lines.
     pub faded: Shared<u8>,
-    #[cfg(feature = "objects")]
     users: Users,
     /// Some mesh is divided into sections.
     pub sections: bool,
@@ -78,19 +76,15 @@ pub(crate) struct ObjectStyles {
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
-#[cfg(feature = "objects")]
 pub(crate) const HIDDEN_ONLY: u32 = 16;
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only visible parts have lines.
-#[cfg(feature = "objects")]
 pub(crate) const VISIBLE_ONLY: u32 = 32;
 
 /// The bits of `ObjectStyleUniform::kinds` of all kinds of line.
-#[cfg(feature = "objects")]
 const ALL_KINDS: u32 = 7;
 
 /// The bit of `ObjectStyleUniform::kinds` of objects that the color effects leave alone.
-#[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;
 
 /// Which components of objects there are in a world.
@@ -119,16 +113,12 @@ impl ObjectStyles {
     }
 
     pub fn changes(&self) -> ObjectChanges {
-        #[cfg(feature = "objects")]
-        let unstyled = self.entries.iter().any(|e| e.kinds & UNSTYLED != 0);
-        #[cfg(not(feature = "objects"))]
-        let unstyled = false;
         ObjectChanges {
             any: self.any(),
             sections: self.sections,
             asked_sections: self.asked_sections,
             widths: self.widths,
-            unstyled,
+            unstyled: self.entries.iter().any(|e| e.kinds & UNSTYLED != 0),
             highlights: self.highlights,
             fades: self.fades,
             anchored: self.entries.iter().any(|e| e.anchor_size > 0.0),
@@ -145,7 +135,6 @@ impl ObjectStyles {
 }
 
 /// The objects that use the slots of a table. Only the main world knows them.
-#[cfg(feature = "objects")]
 #[derive(Default)]
 struct Users {
     /// The number of objects of each slot.
@@ -156,7 +145,6 @@ struct Users {
     waiting: EntityHashMap<ObjectStyleUniform>,
 }
 
-#[cfg(feature = "objects")]
 impl ObjectStyles {
     /// Gives objects another style; `None`: none. The slots of all other objects stay, except for
     /// those that wait for one. Objects with a slot come before those without one, and then in the
@@ -205,7 +193,7 @@ impl ObjectStyles {
     /// The slot of the style of an object, see [`take`](Self::take).
     fn enter(&mut self, object: Entity, before: Option<u8>, style: ObjectStyleUniform) -> u8 {
         self.take(before, style).unwrap_or_else(|| {
-            bevy::log::warn_once!(
+            warn_once!(
                 "more than {MOST_STYLES} different outline styles: the others are drawn like the last"
             );
             self.users.waiting.insert(object, style);
@@ -271,7 +259,6 @@ impl ObjectStyles {
     }
 }
 
-#[cfg(feature = "objects")]
 impl ObjectStyleUniform {
     /// All of it; equal for styles that are drawn alike.
     fn bits(&self) -> [u32; 15] {
@@ -294,7 +281,7 @@ impl ObjectStyleUniform {
 
 #[cfg(feature = "objects")]
 impl super::changes::Follow for ObjectStyles {
-    fn follow(&mut self, main: &Self, changed: &mut MainEntityHashSet) {
+    fn follow(&mut self, main: &Self, changed: &mut bevy::render::sync_world::MainEntityHashSet) {
         self.slots.follow(&main.slots, changed);
         self.faded.follow(&main.faded, changed);
         self.entries.clone_from(&main.entries);
@@ -324,7 +311,7 @@ impl ObjectStyleBuffer {
     }
 }
 
-#[cfg(all(test, feature = "objects"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -47,10 +47,6 @@ impl Pressure {
 /// The texture has the size and the number of samples of the depth texture. It can be another
 /// texture in every frame.
 #[derive(Component, Clone, Debug)]
-#[cfg_attr(
-    not(feature = "objects"),
-    allow(dead_code, reason = "only the feature `objects` draws widths")
-)]
 pub struct ViewLineWidths {
     /// `R8Unorm`: 127 of 255 is the factor 1, also where no object is; 254 is 2, the largest
     /// factor.

@@ -7,37 +7,38 @@ use std::sync::{
 };
 
 use bevy::{
-    asset::AssetServer,
+    asset::{AssetServer, Handle, load_embedded_asset},
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
         entity::Entity,
         query::With,
+        resource::Resource,
         system::{Commands, Query, Res, ResMut},
     },
     math::UVec4,
     render::{
         camera::ExtractedCamera,
         render_resource::{
-            BindGroupEntries, Buffer, BufferUsages, CachedComputePipelineId, PipelineCache,
-            SpecializedComputePipelines, TextureView,
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer,
+            BufferUsages, CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache,
+            ShaderStages, SpecializedComputePipeline, SpecializedComputePipelines,
+            TextureSampleType, TextureView,
+            binding_types::{storage_buffer_sized, uniform_buffer_sized},
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
     },
+    shader::Shader,
 };
 
-use super::{
-    DepthTest,
-    pipeline::{CountPipeline, count_layout},
-    tolerant::TolerantIds,
-    watch::Reading,
-};
+use super::{DepthTest, watch::Reading};
 use crate::{
-    gpu::{buffer, compute_pass},
+    gpu::{UNFILTERABLE, buffer, compute_pass, definitions, sampled},
     objects::{
         IdRequest, ViewObjectIds,
+        bindings::IdBindings,
         phase::{Layer, ObjectIdPhases},
     },
     readback::map_words,
@@ -152,16 +153,41 @@ impl IdCount {
     }
 }
 
-pub(super) fn init_count_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    views: Query<Entity, With<IdCount>>,
-) {
-    // This runs again after a lost device, whose buffers are no longer valid.
-    for view in &views {
-        commands.entity(view).remove::<IdCount>();
+/// Counts missing ids. Its key: whether the view is multisampled.
+#[derive(Resource)]
+pub(super) struct CountPipeline(Handle<Shader>);
+
+pub(super) fn init_count_pipeline(mut commands: Commands, assets: Res<AssetServer>) {
+    let shader = load_embedded_asset!(assets.as_ref(), "count.wgsl");
+    commands.insert_resource(CountPipeline(shader));
+}
+
+fn count_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::COMPUTE,
+        (
+            sampled(multisampled, UNFILTERABLE),
+            sampled(multisampled, TextureSampleType::Uint),
+            uniform_buffer_sized(false, None),
+            storage_buffer_sized(false, None),
+        ),
+    );
+    BindGroupLayoutDescriptor::new("comics_count_ids", &entries)
+}
+
+impl SpecializedComputePipeline for CountPipeline {
+    type Key = bool;
+
+    fn specialize(&self, multisampled: bool) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_count_ids".into()),
+            layout: vec![count_layout(multisampled)],
+            shader: self.0.clone(),
+            shader_defs: definitions([(multisampled, "MULTISAMPLED")]).collect(),
+            entry_point: Some("count".into()),
+            ..Default::default()
+        }
     }
-    commands.insert_resource(CountPipeline::new(&assets));
 }
 
 /// Gives the views whose ids are drawn what counting needs, on devices with compute shaders.
@@ -202,7 +228,7 @@ type Counted = (
     (
         &'static IdRequest,
         &'static ViewObjectIds,
-        Option<&'static TolerantIds>,
+        Option<&'static IdBindings>,
         &'static IdCount,
     ),
 );
@@ -216,10 +242,11 @@ pub(in crate::objects) fn count_ids(
     mut ctx: RenderContext,
 ) {
     let ((camera, extracted, resolution), (depth, prepass), ids) = view.into_inner();
-    let (request, ids, tolerant, count) = ids;
+    let (request, ids, bindings, count) = ids;
+    let has_own_depth = bindings.is_some_and(|bindings| bindings.depth.is_some());
     let is_tolerant = test.tolerant();
     let free = count.state.load(Ordering::Acquire) == FREE;
-    if !test.counts() || !free || is_tolerant != tolerant.is_some() {
+    if !test.counts() || !free || is_tolerant != has_own_depth {
         return;
     }
     let Some(covered) = prepass.depth.as_ref().map(|depth| &depth.texture) else {

@@ -2,11 +2,9 @@
 //! prepass. WGSL does not promise that two pipelines compute the same position, and the
 //! engine's vertex shaders have no `@invariant`: on a device where the positions differ, ids
 //! would be missing. So missing ids are counted (`count.rs`), and where a trial shows that a
-//! tolerance brings them back (`watch.rs`), ids are drawn with one (`tolerant.rs`).
+//! tolerance brings them back (`watch.rs`), ids are drawn with one (`bindings.rs`).
 
 mod count;
-mod pipeline;
-mod tolerant;
 mod watch;
 
 use std::sync::{
@@ -33,16 +31,12 @@ use bevy::{
 };
 
 use self::{
-    count::{Readings, init_count_pipeline, map_counts, prepare_counts},
-    pipeline::CountPipeline,
-    tolerant::prepare_tolerant_ids,
+    count::{CountPipeline, Readings, init_count_pipeline, map_counts, prepare_counts},
     watch::Watch,
 };
-use super::instances::bind_instances;
 use crate::schedule::PrepareComics;
 
-pub(super) use count::count_ids;
-pub(super) use tolerant::TolerantIds;
+pub(super) use count::{IdCount, count_ids};
 
 /// How the pass of object ids compares depth with the depth prepass. A resource of the main
 /// world; a change takes effect in the next frame.
@@ -172,8 +166,7 @@ pub(super) fn build_render(render_app: &mut SubApp) {
         .add_systems(
             Render,
             (
-                (prepare_tolerant_ids.after(bind_instances), prepare_counts)
-                    .in_set(PrepareComics::Services),
+                prepare_counts.in_set(PrepareComics::Services),
                 map_counts.in_set(RenderSystems::Cleanup),
             ),
         );

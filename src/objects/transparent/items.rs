@@ -27,7 +27,7 @@ use crate::objects::{
     DepthWrites, ID_FORMAT, QueuedDepth,
     items::{DrawnMeshes, Missing, may_move_vertices},
     phase::{Bin, Layer},
-    pipeline::{IdParts, ObjectIdPipeline, in_prepass, reads_material},
+    pipeline::{ObjectIdPipeline, in_prepass, reads_material},
 };
 
 /// The shaders of this pass.
@@ -60,7 +60,7 @@ pub(in crate::objects) struct TransparentKey {
 }
 
 pub(in crate::objects) struct TransparentSpecializer {
-    ids: Arc<IdParts>,
+    ids: ObjectIdPipeline,
     properties: Arc<MaterialProperties>,
     shader: Handle<Shader>,
 }
@@ -221,7 +221,7 @@ impl TransparentPipeline {
         properties: &Arc<MaterialProperties>,
     ) -> TransparentSpecializer {
         TransparentSpecializer {
-            ids: ids.parts(),
+            ids: ids.clone(),
             properties: properties.clone(),
             shader: self.shader.clone(),
         }

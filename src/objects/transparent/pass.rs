@@ -24,9 +24,8 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            FragmentState, LoadOp, MultisampleState, Operations, PipelineCache,
-            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
+            FragmentState, LoadOp, MultisampleState, PipelineCache, RenderPassDescriptor,
+            RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
             SpecializedRenderPipelines, StoreOp, TextureFormat, TextureUsages, TextureView,
         },
         renderer::{RenderAdapter, RenderContext, RenderDevice, ViewQuery},
@@ -40,7 +39,7 @@ use crate::{
     bind_groups::Binder,
     depth::surfaces::{OwnNormals, OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    gpu::{self, UNFILTERABLE, sampled},
+    gpu::{self, UNFILTERABLE, depth_attachment, sampled},
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdPhase, ObjectIdPhases},
@@ -277,17 +276,12 @@ impl<'a> Targets<'a> {
                 self.ids.map(|ids| gpu::attachment(ids, LoadOp::Load)),
                 (self.normal.as_ref()).map(|(normal, ..)| gpu::attachment(normal, LoadOp::Load)),
             ],
-            depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-                view: &self.depth.1.default_view,
-                depth_ops: Some(Operations {
-                    load: LoadOp::Load,
-                    store: StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
+            depth_stencil_attachment: Some(depth_attachment(
+                &self.depth.1.default_view,
+                LoadOp::Load,
+                StoreOp::Store,
+            )),
+            ..Default::default()
         });
         if let Some(viewport) = viewport {
             pass.set_camera_viewport(&viewport);
