@@ -128,25 +128,8 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "link/sign.wgsl");
     load_shader_library!(app, "modifiers/sheet.wgsl");
     load_shader_library!(app, "cracks/stored.wgsl");
-    embedded_asset!(app, "find/walk.wgsl");
-    embedded_asset!(app, "find/cells.wgsl");
-    embedded_asset!(app, "link/link.wgsl");
-    embedded_asset!(app, "history/hold.wgsl");
-    embedded_asset!(app, "link/join.wgsl");
-    embedded_asset!(app, "link/close_gaps.wgsl");
-    embedded_asset!(app, "draw/ends.wgsl");
-    embedded_asset!(app, "draw/strokes.wgsl");
-    embedded_asset!(app, "link/density.wgsl");
-    embedded_asset!(app, "link/corners.wgsl");
-    embedded_asset!(app, "link/settle.wgsl");
-    embedded_asset!(app, "tiles/tiles.wgsl");
+    LineShaders::embed(app);
     embedded_asset!(app, "tiles/tile.wgsl");
-    embedded_asset!(app, "find/resolve.wgsl");
-    embedded_asset!(app, "find/find.wgsl");
-    embedded_asset!(app, "draw/columns.wgsl");
-    embedded_asset!(app, "find/faithful.wgsl");
-    embedded_asset!(app, "draw/draw.wgsl");
-    embedded_asset!(app, "history/accumulate.wgsl");
     embedded_asset!(app, "record/highlights.wgsl");
 }
 

@@ -1,7 +1,8 @@
 //! The pipelines that find lines and draw their ink.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    app::App,
+    asset::{AssetServer, Handle, embedded_asset, load_embedded_asset},
     core_pipeline::FullscreenShader,
     ecs::resource::Resource,
     render::render_resource::{
@@ -23,56 +24,51 @@ use super::{
     tiles::{tile_shader, vertices},
 };
 
-/// The shaders of the passes.
-#[derive(Resource)]
-pub(crate) struct LineShaders {
-    fullscreen: FullscreenShader,
-    walk: Handle<Shader>,
-    cells: Handle<Shader>,
-    link: Handle<Shader>,
-    join: Handle<Shader>,
-    hold: Handle<Shader>,
-    close_gaps: Handle<Shader>,
-    ends: Handle<Shader>,
-    strokes: Handle<Shader>,
-    density: Handle<Shader>,
-    corners: Handle<Shader>,
-    settle: Handle<Shader>,
-    tiles: Handle<Shader>,
-    tile: Handle<Shader>,
-    resolve: Handle<Shader>,
-    find: Handle<Shader>,
-    columns: Handle<Shader>,
-    faithful: Handle<Shader>,
-    draw: Handle<Shader>,
-    accumulate: Handle<Shader>,
+macro_rules! line_shaders {
+    ($($name:ident: $path:literal,)*) => {
+        /// The shaders of the passes.
+        #[derive(Resource)]
+        pub(crate) struct LineShaders {
+            fullscreen: FullscreenShader,
+            tile: Handle<Shader>,
+            $($name: Handle<Shader>,)*
+        }
+
+        impl LineShaders {
+            pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
+                Self {
+                    fullscreen: fullscreen.clone(),
+                    tile: tile_shader(assets),
+                    $($name: load_embedded_asset!(assets, $path),)*
+                }
+            }
+
+            pub fn embed(app: &mut App) {
+                $(embedded_asset!(app, $path);)*
+            }
+        }
+    };
 }
 
-impl LineShaders {
-    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
-        Self {
-            fullscreen: fullscreen.clone(),
-            walk: load_embedded_asset!(assets, "find/walk.wgsl"),
-            cells: load_embedded_asset!(assets, "find/cells.wgsl"),
-            link: load_embedded_asset!(assets, "link/link.wgsl"),
-            join: load_embedded_asset!(assets, "link/join.wgsl"),
-            hold: load_embedded_asset!(assets, "history/hold.wgsl"),
-            close_gaps: load_embedded_asset!(assets, "link/close_gaps.wgsl"),
-            ends: load_embedded_asset!(assets, "draw/ends.wgsl"),
-            strokes: load_embedded_asset!(assets, "draw/strokes.wgsl"),
-            density: load_embedded_asset!(assets, "link/density.wgsl"),
-            corners: load_embedded_asset!(assets, "link/corners.wgsl"),
-            settle: load_embedded_asset!(assets, "link/settle.wgsl"),
-            tiles: load_embedded_asset!(assets, "tiles/tiles.wgsl"),
-            tile: tile_shader(assets),
-            resolve: load_embedded_asset!(assets, "find/resolve.wgsl"),
-            find: load_embedded_asset!(assets, "find/find.wgsl"),
-            columns: load_embedded_asset!(assets, "draw/columns.wgsl"),
-            faithful: load_embedded_asset!(assets, "find/faithful.wgsl"),
-            draw: load_embedded_asset!(assets, "draw/draw.wgsl"),
-            accumulate: load_embedded_asset!(assets, "history/accumulate.wgsl"),
-        }
-    }
+line_shaders! {
+    walk: "find/walk.wgsl",
+    cells: "find/cells.wgsl",
+    link: "link/link.wgsl",
+    join: "link/join.wgsl",
+    hold: "history/hold.wgsl",
+    close_gaps: "link/close_gaps.wgsl",
+    ends: "draw/ends.wgsl",
+    strokes: "draw/strokes.wgsl",
+    density: "link/density.wgsl",
+    corners: "link/corners.wgsl",
+    settle: "link/settle.wgsl",
+    tiles: "tiles/tiles.wgsl",
+    resolve: "find/resolve.wgsl",
+    find: "find/find.wgsl",
+    columns: "draw/columns.wgsl",
+    faithful: "find/faithful.wgsl",
+    draw: "draw/draw.wgsl",
+    accumulate: "history/accumulate.wgsl",
 }
 
 /// The passes that are compute passes.

@@ -183,7 +183,7 @@ fn assign_highlights(
         (mesh, lines.flatten())
     });
     highlights.styles.assign(changed);
-    styles.highlights = highlights.styles.any();
+    styles.flags.highlights = highlights.styles.any();
 }
 
 pub(super) fn build(app: &mut App) {

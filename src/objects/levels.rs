@@ -185,8 +185,9 @@ pub(super) fn find_levels(
         };
         levels.chain(meshes);
     }
-    if styles.fades == levels.margins.is_empty() {
-        styles.fades = !levels.margins.is_empty();
+    let fades = !levels.margins.is_empty();
+    if styles.flags.fades != fades {
+        styles.flags.fades = fades;
     }
 }
 

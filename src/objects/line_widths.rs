@@ -56,7 +56,7 @@ pub(super) fn find_wide_meshes(
     mut styles: ResMut<ObjectStyles>,
 ) {
     if !meshes.update(&mut marked, |_| ()).is_empty() {
-        styles.widths = !meshes.0.is_empty();
+        styles.flags.widths = !meshes.0.is_empty();
     }
 }
 

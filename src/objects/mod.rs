@@ -51,8 +51,6 @@ mod plugin;
 mod ranged;
 #[cfg(feature = "objects")]
 mod sections;
-#[cfg(feature = "objects")]
-mod shading;
 mod shared;
 #[cfg(feature = "objects")]
 mod simplification;

@@ -16,8 +16,8 @@ use bevy::{
     prelude::Deref,
     render::{
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, FragmentState,
-            RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, DownlevelFlags,
+            FragmentState, RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
             SpecializedMeshPipelineError, TextureFormat,
             binding_types::{storage_buffer_read_only, uniform_buffer},
         },
@@ -26,7 +26,7 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
+use super::{ID_FORMAT, Pressure, WIDTH_FORMAT};
 use crate::gpu::{UNFILTERABLE, definitions, sampled};
 
 /// What all pipelines of this pass have in common.
@@ -41,6 +41,14 @@ pub(super) struct IdParts {
     /// Without and with sections.
     shaders: [Handle<Shader>; 2],
     shades_samples: bool,
+}
+
+/// Whether the shaders of an adapter can run for each sample of a pixel: then `SAMPLE_SHADING` is
+/// defined where a shader asks for the number of its sample. Vulkan drivers need not have it; where
+/// it is missing, the first sample of a pixel stands for all.
+pub(super) fn has_sample_shading(adapter: &RenderAdapter) -> bool {
+    let flags = adapter.get_downlevel_capabilities().flags;
+    flags.contains(DownlevelFlags::MULTISAMPLED_SHADING)
 }
 
 pub(super) fn init_object_id_pipeline(

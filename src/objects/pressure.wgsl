@@ -5,7 +5,6 @@
 
 #import bevy_comics::effect::noise::hash
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a uniform.
 struct Pressure {
     // By what fraction lines become wider or narrower at most.
     amount: f32,

@@ -63,16 +63,8 @@ pub(crate) struct ObjectStyles {
     /// The slots of objects while they have mostly faded to nothing: their styles, without lines.
     pub faded: Shared<u8>,
     users: Users,
-    /// Some mesh is divided into sections.
-    pub sections: bool,
-    /// Some mesh is divided because it has `MeshSections`.
-    pub asked_sections: bool,
-    /// Some object has a `SelectionOutline` or `XRayOutline`.
-    pub highlights: bool,
-    /// The vertices of some mesh say how wide its lines are.
-    pub widths: bool,
-    /// Some mesh fades at some distance.
-    pub fades: bool,
+    /// What does not follow from the slots. Only the main world knows it.
+    pub flags: ObjectChanges,
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
@@ -115,13 +107,9 @@ impl ObjectStyles {
     pub fn changes(&self) -> ObjectChanges {
         ObjectChanges {
             any: self.any(),
-            sections: self.sections,
-            asked_sections: self.asked_sections,
-            widths: self.widths,
             unstyled: self.entries.iter().any(|e| e.kinds & UNSTYLED != 0),
-            highlights: self.highlights,
-            fades: self.fades,
             anchored: self.entries.iter().any(|e| e.anchor_size > 0.0),
+            ..self.flags
         }
     }
 
@@ -285,10 +273,6 @@ impl super::changes::Follow for ObjectStyles {
         self.slots.follow(&main.slots, changed);
         self.faded.follow(&main.faded, changed);
         self.entries.clone_from(&main.entries);
-        self.sections = main.sections;
-        self.highlights = main.highlights;
-        self.widths = main.widths;
-        self.fades = main.fades;
     }
 }
 

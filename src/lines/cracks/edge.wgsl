@@ -19,8 +19,7 @@ struct EdgeInk {
 const EDGE_INK: u32 = 1u;
 const EDGE_SURFACE: u32 = 2u;
 
-// How the lines of a view are found and inked. Its size is a multiple of 16 bytes, as
-// WGSL requires of a struct inside a uniform.
+// How the lines of a view are found and inked.
 struct Lines {
     silhouette_color: vec3<f32>,
     silhouette_opacity: f32,

@@ -4,7 +4,7 @@
 // An entry point calls set_lines() first, with the settings of its own uniform.
 
 #import bevy_comics::depth::view::{inside_viewport, view}
-#import bevy_comics::lines::edge::{Lines, decode_ink}
+#import bevy_comics::lines::edge::{Lines, decode_ink, largest_opacity}
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
@@ -182,7 +182,6 @@ fn draw_lines(picture: vec4<f32>, lines: Found) -> vec4<f32> {
 
 // Ink of all kinds together, 0 to 1: the maximum ([CL] Eq. 5).
 fn total_ink(lines: Found) -> f32 {
-    let s = lines_drawn;
-    return max(lines.ink.x * s.silhouette_opacity, max(lines.ink.y * s.crease_opacity, lines.ink.z * s.object_opacity));
+    return largest_opacity(lines_drawn, lines.ink);
 }
 #endif

@@ -2,7 +2,7 @@
 // cells.wgsl finds. A fragment stores the cracks to the east (x) and south (y) of its
 // pixel.
 
-#import bevy_comics::depth::view::{is_drawn_sky, set_view, texel_depth}
+#import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
 #import bevy_comics::lines::edge::{
     departures, fold, in_front_by, is_outdone, is_ridge, is_rim_ridge, step_excess,
@@ -10,44 +10,15 @@
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
 #ifdef NORMALS
-#import bevy_comics::depth::normal::texel_normal
+#import bevy_comics::lines::rows::normal_of
 #endif
-#ifdef HIGHLIGHTS
-#import bevy_comics::lines::hidden::highlighted_object
-#else ifdef OBJECT_IDS
-#import bevy_comics::objects::texel_object
+#ifdef OBJECT_IDS
+#import bevy_comics::lines::rows::object_of
 #endif
 
 fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
     return texel_depth(origin + vec2(x, y), 0);
 }
-
-#ifdef NORMALS
-fn normal_at(at: vec2<i32>) -> vec4<f32> {
-#ifdef SKY_BEYOND
-    if is_drawn_sky(at) {
-        return vec4(0.0);
-    }
-#endif
-    return texel_normal(at, 0);
-}
-#endif
-
-#ifdef OBJECT_IDS
-// The object at a pixel, and its slot and section.
-fn object_at(at: vec2<i32>) -> vec2<u32> {
-#ifdef HIGHLIGHTS
-    return highlighted_object(at, texel_depth(at, 0));
-#else
-#ifdef SKY_BEYOND
-    if is_drawn_sky(at) {
-        return vec2(0u);
-    }
-#endif
-    return texel_object(at, 0);
-#endif
-}
-#endif
 
 #ifdef BENDS
 // How much raw depth bends at the three cracks in the middle of six pixels in a row, of which the third is at
@@ -117,29 +88,29 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     ).xyxy;
 #endif
 #ifdef NORMALS
-    let n = normal_at(origin + p);
-    let e = normal_at(origin + vec2(high.x, p.y));
-    let s = normal_at(origin + vec2(p.x, high.y));
+    let n = normal_of(origin + p);
+    let e = normal_of(origin + vec2(high.x, p.y));
+    let s = normal_of(origin + vec2(p.x, high.y));
     at.folds = vec2(fold(n, e), fold(n, s)).xyxy;
 #ifdef HARD
     let direction = line_pass.settings.owner_direction;
     at.faces_more = dot(n.xyz, direction) - vec2(dot(e.xyz, direction), dot(s.xyz, direction)).xyxy;
 #endif
     let folds_before = vec2(
-        fold(normal_at(origin + vec2(low.x, p.y)), n),
-        fold(normal_at(origin + vec2(p.x, low.y)), n),
+        fold(normal_of(origin + vec2(low.x, p.y)), n),
+        fold(normal_of(origin + vec2(p.x, low.y)), n),
     ).xyxy;
     let folds_beyond = vec2(
-        fold(e, normal_at(origin + vec2(high_2.x, p.y))),
-        fold(s, normal_at(origin + vec2(p.x, high_2.y))),
+        fold(e, normal_of(origin + vec2(high_2.x, p.y))),
+        fold(s, normal_of(origin + vec2(p.x, high_2.y))),
     ).xyxy;
     at.ridge = is_ridge(folds_before, at.folds, folds_beyond);
     at.rim = is_rim_ridge(folds_before, at.folds, folds_beyond);
 #endif
 #ifdef OBJECT_IDS
-    let here = object_at(origin + p);
-    let east = object_at(origin + vec2(high.x, p.y));
-    let south = object_at(origin + vec2(p.x, high.y));
+    let here = object_of(origin + p);
+    let east = object_of(origin + vec2(high.x, p.y));
+    let south = object_of(origin + vec2(p.x, high.y));
     at.object_here = vec4(here.x);
     at.slot_section_here = vec4(here.y);
     at.object_there = vec2(east.x, south.x).xyxy;

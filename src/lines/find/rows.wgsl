@@ -241,14 +241,18 @@ fn step_depths(above: ptr<function, Above>, c: Columns, row: i32, found: ptr<fun
 }
 
 #ifdef NORMALS
-fn normal_at(c: Columns, x: i32, y: i32) -> vec4<f32> {
-    let at = c.origin + vec2(x, y);
+// The normal at a pixel of the depth texture; 0 for the sky.
+fn normal_of(at: vec2<i32>) -> vec4<f32> {
 #ifdef SKY_BEYOND
     if is_drawn_sky(at) {
         return vec4(0.0);
     }
 #endif
     return texel_normal(at, 0);
+}
+
+fn normal_at(c: Columns, x: i32, y: i32) -> vec4<f32> {
+    return normal_of(c.origin + vec2(x, y));
 }
 
 // Reads the normals of a row.
@@ -294,9 +298,8 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
 #endif
 
 #ifdef OBJECT_IDS
-// The object at a pixel, and its slot and section.
-fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
-    let at = c.origin + vec2(x, y);
+// The object at a pixel of the depth texture, and its slot and section.
+fn object_of(at: vec2<i32>) -> vec2<u32> {
 #ifdef HIGHLIGHTS
     return highlighted_object(at, texel_depth(at, 0));
 #else
@@ -307,6 +310,10 @@ fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
 #endif
     return texel_object(at, 0);
 #endif
+}
+
+fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
+    return object_of(c.origin + vec2(x, y));
 }
 
 // Reads the objects of a row, and their slots and sections.

@@ -2,7 +2,6 @@
 
 // How lines are blended with the frames before, under temporal anti-aliasing. Pure functions.
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct History {
     // Fraction of this frame where lines move; 1: there is no history.
     blend_factor: f32,

@@ -4,7 +4,6 @@
 
 #import bevy_comics::depth::map::is_background
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct LineFade {
     // Distance along the view's axis from the raw depth d: x / (d + y), in an orthographic view
     // x + y d.

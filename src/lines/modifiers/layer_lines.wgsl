@@ -2,7 +2,6 @@
 
 // The width, opacity and color of lines in near, middle and far. Pure functions.
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct LineLayers {
     // Colors in near, middle and far in linear light, multiplied by how much of the color of a
     // line they are, and that amount.

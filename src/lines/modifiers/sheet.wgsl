@@ -6,7 +6,6 @@
 #import bevy_comics::effect::screen::{cos_turn, sin_turn}
 #import bevy_comics::effect::sheet::{bristles, sheet_height}
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Sheet {
     // The corner of the viewport, in physical pixels from that of the sheet.
     origin: vec2<f32>,

@@ -9,7 +9,6 @@
 #import bevy_comics::objects::object_simplification
 #endif
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct LineSimplification {
     // Simplification at D = 0 and at D = 1, and the exponent of D between them.
     at_near: f32,

@@ -3,17 +3,17 @@
 use bevy::{
     ecs::{component::Component, entity::Entity},
     math::{UVec2, UVec4, Vec2, Vec4},
+    render::render_resource::ShaderType,
 };
 
-use super::{
-    grid::{Grid, words},
-    history::HistoryRequest,
-    uniform::LinePassUniform,
-};
+use super::grid::{Grid, words};
 use crate::{
     depth::view::ViewUniform,
     lines::{
-        modifiers::{LineFadeUniform, LineLayers, LineSimplification, SheetUniform},
+        modifiers::{
+            LineFadeUniform, LineLayers, LineLayersUniform, LineSimplification,
+            LineSimplificationUniform, SheetUniform,
+        },
         settings::{
             BoilUniform, FogUniform, LineEdge, LinesUniform, MapJumps, Outlines, WeightUniform,
         },
@@ -33,6 +33,56 @@ pub(crate) enum Search {
     Around,
     /// The best crack of each column within reach, see `columns.wgsl`.
     Columns,
+}
+
+/// `LinePass` of `pass.wgsl`, the uniform of the passes that find and draw lines.
+#[derive(ShaderType, Clone, Copy, Debug, Default)]
+pub(crate) struct LinePassUniform {
+    pub view: ViewUniform,
+    pub lines: LinesUniform,
+    pub grid: Grid,
+    pub weight: WeightUniform,
+    pub fog: FogUniform,
+    pub fade: LineFadeUniform,
+    pub layers: LineLayersUniform,
+    pub simplification: LineSimplificationUniform,
+    pub boil: BoilUniform,
+    pub history: HistoryUniform,
+    pub sheet: SheetUniform,
+}
+
+/// Frames that a line may be missing in: the same in `history.wgsl`.
+const MISSING: u32 = 16;
+
+/// `History` of `history.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct HistoryUniform {
+    blend_factor: f32,
+    spacing: i32,
+    tile_frames: u32,
+    unused: u32,
+}
+
+/// The history of a view's lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HistoryRequest {
+    /// Fraction of each frame where lines move.
+    pub blend_factor: f32,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+}
+
+impl HistoryRequest {
+    /// The settings as shaders take them. `reach`: pixels of the grid within which lines are
+    /// drawn around their owners.
+    fn uniform(&self, reach: i32, is_new: bool) -> HistoryUniform {
+        HistoryUniform {
+            blend_factor: if is_new { 1.0 } else { self.blend_factor },
+            spacing: (reach / 2).max(1),
+            tile_frames: MISSING + 1,
+            unused: 0,
+        }
+    }
 }
 
 /// On a view in the render world: a request for its lines, written in every frame by

@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::lines::pass
 
 // The uniform of the passes that find and draw lines: the only module that declares
-// binding 1 of their group.
+// binding 1 of their group. WGSL requires of the structs in it that their sizes are multiples of 16 bytes.
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::boil::Boil

@@ -5,7 +5,6 @@
 
 #import bevy_comics::effect::noise::wave
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Boil {
     // Largest displacement per axis, and the length of its waves, in physical pixels.
     amplitude: f32,

@@ -2,7 +2,6 @@
 
 // How much of a line the engine's distance fog hides. Pure functions.
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Fog {
     // Position in view space from a position in normalized device coordinates:
     // xy * position + zw; in perspective at a distance of 1 along the view's axis.

@@ -5,7 +5,6 @@
 #import bevy_comics::depth::map::{DepthFrame, EMPTY, ORTHOGRAPHIC, has, is_background}
 #import bevy_comics::lines::edge::{OBJECT, SILHOUETTE, THINNEST, byte, pack_width, unpack_crack}
 
-// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Weight {
     // Factors by kind: silhouettes in front of the sky or of other objects, and in front of
     // the same object; creases; object edges.

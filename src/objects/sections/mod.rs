@@ -289,8 +289,8 @@ pub(super) fn divide_meshes(
     }
     tables.pack();
     let found = [tables.any(), tables.any_asked()];
-    if [styles.sections, styles.asked_sections] != found {
-        [styles.sections, styles.asked_sections] = found;
+    if [styles.flags.sections, styles.flags.asked_sections] != found {
+        [styles.flags.sections, styles.flags.asked_sections] = found;
     }
 }
 

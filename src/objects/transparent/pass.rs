@@ -43,7 +43,7 @@ use crate::{
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdPhase, ObjectIdPhases},
-        shading::has_sample_shading,
+        pipeline::has_sample_shading,
     },
 };
 
