@@ -63,7 +63,7 @@ pub(crate) fn find_highlights(
         request,
         passes,
         lines,
-        sources: Sources::new((Some(prepass), own), None, None).layer(layer),
+        sources: Sources::new((Some(prepass), own), (None, None, None)).layer(layer),
         range: None,
         styles: &styles.0,
         binder: &binder,
@@ -94,13 +94,12 @@ pub(crate) fn find_lines(
     binder: Binder,
     mut ctx: RenderContext,
 ) {
-    let ((request, passes, lines), prepass, range, (ids, widths, object_depths)) =
-        view.into_inner();
+    let ((request, passes, lines), prepass, range, objects) = view.into_inner();
     let inputs = Inputs {
         request,
         passes,
         lines,
-        sources: Sources::new(prepass, ids, widths).with_object_depths(object_depths),
+        sources: Sources::new(prepass, objects),
         range,
         styles: &object_styles,
         binder: &binder,

@@ -32,11 +32,14 @@ pub(super) struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    /// The surfaces of the view, the object ids and the widths of lines.
+    /// The surfaces of the view, the object ids, the widths of lines and the depths of objects.
     pub fn new(
         surfaces: SurfaceParts<'a>,
-        ids: Option<&'a ViewObjectIds>,
-        widths: Option<&'a ViewLineWidths>,
+        (ids, widths, object_depths): (
+            Option<&'a ViewObjectIds>,
+            Option<&'a ViewLineWidths>,
+            Option<&'a ObjectDepths>,
+        ),
     ) -> Self {
         let surfaces = Surfaces::from(surfaces);
         Self {
@@ -45,17 +48,8 @@ impl<'a> Sources<'a> {
             ids: ids.map(|ids| &ids.view),
             widths: widths.map(|widths| &widths.view),
             motion: surfaces.motion().map(|motion| &motion.default_view),
-            object_depths: None,
+            object_depths: object_depths.map(|depths| &depths.table),
             picture: None,
-        }
-    }
-
-    /// With the depths of objects.
-    pub fn with_object_depths(self, object_depths: Option<&'a ObjectDepths>) -> Self {
-        let object_depths = object_depths.map(|object_depths| &object_depths.table);
-        Self {
-            object_depths,
-            ..self
         }
     }
 
@@ -64,12 +58,10 @@ impl<'a> Sources<'a> {
     pub fn layer(self, layer: &'a ViewLayer) -> Self {
         Self {
             depth: Some(&layer.depth),
-            normal: None,
             ids: Some(&layer.ids.default_view),
-            widths: None,
             motion: self.motion,
-            object_depths: None,
             picture: self.depth.map(|depth| &depth.default_view),
+            ..Default::default()
         }
     }
 }

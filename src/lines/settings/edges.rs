@@ -71,9 +71,7 @@ impl EdgeStyle {
             unused: Vec3::ZERO,
         }
     }
-}
 
-impl EdgeStyle {
     /// Between two styles; without one, creases have a color in full.
     pub(super) fn between(
         a: Option<Self>,

@@ -14,7 +14,7 @@
 // Of each tile, the number of frames for which it is drawn, this one included.
 @group(0) @binding(31) var<storage, read_write> frames_left: array<u32>;
 
-// TileList of tiles.rs.
+// TileList of mod.rs.
 const INKED: u32 = 0u;
 const LISTS: u32 = 2u;
 
