@@ -188,7 +188,7 @@ fn the_outline_lies_over_the_effects() {
 }
 
 #[test]
-fn cameras_come_and_go_beside_marked_objects() {
+fn cameras_come_and_go_beside_highlighted_objects() {
     let (mut small, square, _) = scene();
     small.on(square).insert(green(1.0));
     small.settle();

@@ -126,7 +126,7 @@ fn a_moved_object_carries_its_dots() {
 /// Without a `PatternAnchor`, dots are those of the page. With one that is inherited, a figure of
 /// two meshes has one screen.
 #[test]
-fn only_marked_objects_carry_dots() {
+fn only_anchored_objects_carry_dots() {
     let (mut small, board) = board();
     let at = Transform::from_xyz(2.5, 1.25, 0.0);
     small.world().entity_mut(board).insert(at);
