@@ -8,7 +8,7 @@ use bevy_comics_testkit::reference::color::{linear_to_oklab, oklab_to_linear};
 
 use image::RgbaImage;
 
-use crate::{line_scenes::alike, prelude::*, walls::unit_per_pixel};
+use crate::{line_scenes::alike, prelude::*, sections, walls::unit_per_pixel};
 
 const SIZE: UVec2 = UVec2::new(160, 120);
 const CONVEX: Color = Color::srgb(1.0, 0.0, 0.0);
@@ -113,12 +113,18 @@ fn rotations(
     small.insert((Transform::IDENTITY, Projection::Perspective(projection)));
     let mesh = prism(sides, inside);
     let at = Transform::from_xyz(0.0, 0.0, if inside { -0.2 } else { -5.0 });
+    small.clear();
+    let entity = small.put(mesh.clone(), unlit(Color::WHITE), at);
+    small.outlined(signs(source));
+    if source != CreaseSource::Normals {
+        sections::wait(small, sections::some_has_sections);
+    }
     let mut sum = [0, 0];
     for i in 0..count {
-        small.clear();
         let at = at.with_rotation(turned(i * 64 / count));
-        small.put(mesh.clone(), unlit(Color::WHITE), at);
-        let mut picture = small.outlined(signs(source));
+        small.on(entity).insert(at);
+        small.headless.step(1);
+        let mut picture = small.picture();
         let corners = projected(&mesh, at, fov);
         for (x, y, pixel) in picture.enumerate_pixels_mut() {
             let place = Vec2::new(x as f32, y as f32) + 0.5;

@@ -106,7 +106,7 @@ fn wait_for_creases(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
     wait(small, are_there);
 }
 
-fn some_has_sections(ids: &IdImage) -> bool {
+pub fn some_has_sections(ids: &IdImage) -> bool {
     !none_has_sections(ids)
 }
 

@@ -6,6 +6,7 @@ use bevy::{
         schedule::{Core3d, Core3dSystems},
         tonemapping::tonemapping,
     },
+    diagnostic::FrameCount,
     pbr::DefaultOpaqueRendererMethod,
     render::{
         renderer::{RenderContext, ViewQuery},
@@ -261,4 +262,8 @@ pub fn shoot(small: &mut Small, row: &Row, size: UVec2, style: Option<&ComicStyl
         SETTLE
     };
     small.headless.step(frames);
+    // The jitter of TAA repeats after eight frames. Where pipelines were compiled, there were more frames.
+    while row.is_temporal() && !small.world().resource::<FrameCount>().0.is_multiple_of(8) {
+        small.headless.step(1);
+    }
 }
