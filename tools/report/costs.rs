@@ -90,22 +90,6 @@ pub fn cost_table(out: &mut String, costs: &[Cost]) {
     out.push('\n');
 }
 
-/// (name, median milliseconds, median ratio to the blit of the round).
-pub fn bare_costs(times: &Table, column: &str) -> Vec<(String, f64, f64)> {
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let of = |name: &str| times.numbers(&times.matching(&[(column, name)]), "milliseconds");
-    let blit = of("blit");
-    times
-        .distinct(&all, column)
-        .into_iter()
-        .map(|name| {
-            let own = of(&name);
-            let ratios: Vec<f64> = own.iter().zip(&blit).map(|(a, b)| a / b).collect();
-            (name, median(&own), median(&ratios))
-        })
-        .collect()
-}
-
 /// Size of the pictures of a table, as text.
 pub fn size(times: &Table) -> String {
     times.rows.first().map_or_else(String::new, |row| {

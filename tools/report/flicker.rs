@@ -303,11 +303,7 @@ fn octaves(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> f64 {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(64, 36)
-    } else {
-        UVec2::new(192, 108)
-    };
+    let size = run.size([64, 36], [192, 108]);
     let mut table = Table::new(&["sequence", "variant", "frame", "mean", "p99", "lag"]);
     for name in run.some(1, SEQUENCES) {
         let sequence = play(name, size);

@@ -10,12 +10,11 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_comics::{ComicStyle, Outlines, objects::MeshSections};
+use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
     read_back,
     scenes::BuiltIn,
     specimens::Specimen,
-    studio::set_sections,
     truth::{FINE, Truth, at_places, ends_of_lines, ids_alone},
 };
 
@@ -23,7 +22,6 @@ use crate::{
     Run,
     models::Studio,
     rig::{Drawn, Rig},
-    steps,
     table::Table,
 };
 
@@ -33,9 +31,6 @@ const NEAR_END: i64 = 2 * FINE as i64;
 /// By how much true ends are moved to see how many ends are near one by chance, in pixels of the
 /// finer picture.
 const ELSEWHERE: [i64; 2] = [44, -36];
-
-/// The variant whose mesh has sections.
-const IN_SECTIONS: &str = "mesh in sections";
 
 /// Ends of lines on models that turn, with and without continuing along weak edges; and how many
 /// of them are where true lines end.
@@ -92,68 +87,6 @@ pub fn dashes(run: &Run) -> Result<(), String> {
     run.save("ink_dashes", &table)
 }
 
-/// Ends of lines on the organic model while it turns, with one setting changed at a time.
-pub fn dash_steps(run: &Run) -> Result<(), String> {
-    let (frames, size) = if run.quick {
-        (2, UVec2::new(120, 68))
-    } else {
-        (90, UVec2::new(240, 136))
-    };
-    let turned = |frame| frame as f32 / frames as f32;
-    let parts = || -> Vec<Mesh> {
-        let parts = Specimen::Organic.parts().into_iter();
-        parts.map(|(mesh, _)| mesh).collect()
-    };
-    let mut fine = Studio::new(size * FINE, ids_alone());
-    fine.show_meshes(parts());
-    fine.rig.headless.step(4);
-    let (mut length, mut truth) = (0, Vec::new());
-    for frame in 0..frames {
-        fine.turn(2.6, turned(frame));
-        let lines = fine.rig.truth(size, FINE).any(&[0, 1, 2]);
-        length += lines.iter().filter(|line| **line).count();
-        truth.push(fine_ends(&fine.rig));
-    }
-    let default = Outlines {
-        ink_budget: 1.0,
-        ..default()
-    };
-    let kept = Outlines {
-        hold_frames: 8,
-        ..default
-    };
-    let mut variants = run.some(2, steps::variants());
-    variants.push(("hold_frames 8", kept));
-    variants.push((IN_SECTIONS, default));
-    let mut table = Table::new(&["method", "ends", "true", "true_ends", "by_chance"]);
-    for (method, outlines) in variants {
-        let mut lined = Studio::new(size, outlines);
-        lined.show_meshes(parts());
-        if method == IN_SECTIONS {
-            set_sections(lined.rig.headless.app.world_mut(), MeshSections::default());
-        }
-        lined.rig.headless.step(if run.quick { 4 } else { 30 });
-        let mut counts = Ends::default();
-        for (frame, true_ends) in truth.iter().enumerate() {
-            lined.turn(2.6, turned(frame));
-            let world = lined.rig.headless.app.sub_app(RenderApp).world();
-            let cracks = read_back::cracks(world, lined.rig.view());
-            counts.add(
-                &cracks.as_ref().map(ends_of_lines).unwrap_or_default(),
-                true_ends,
-            );
-        }
-        let Ends {
-            all,
-            true_ends,
-            by_chance,
-        } = counts;
-        table.push(&[&method, &all, &length, &true_ends, &by_chance]);
-        run.say(&format!("{method}: ends counted"));
-    }
-    run.save("ink_dash_steps", &table)
-}
-
 /// Where the lines of the truth end, in pixels of the finer picture.
 fn fine_ends(rig: &Rig) -> Vec<[i64; 2]> {
     let world = rig.headless.app.sub_app(RenderApp).world();
@@ -207,7 +140,7 @@ fn flat(mesh: Mesh) -> Mesh {
 }
 
 /// Makes everything white but the lines: what anti-aliasing does to the picture does not count.
-pub fn whiten(rig: &mut Rig) {
+fn whiten(rig: &mut Rig) {
     let camera = rig.camera;
     let world = rig.headless.app.world_mut();
     world.insert_resource(ClearColor(Color::WHITE));
@@ -243,8 +176,8 @@ pub fn memory(run: &Run) -> Result<(), String> {
     };
     let methods = [
         ("no lines", Drawn::Nothing),
-        ("no history", lines(0.0)),
-        ("history", lines(0.875)),
+        ("no memory", lines(0.0)),
+        ("memory", lines(0.875)),
     ];
     for scene in run.some(1, [BuiltIn::Teapot, BuiltIn::Village]) {
         let mut rig = Rig::new(Some(scene), size);

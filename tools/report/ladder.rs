@@ -1,6 +1,6 @@
 //! What a style does not need is left out: its work is counted and timed.
 
-use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
+use bevy::prelude::*;
 use bevy_comics::ComicsPlugin;
 
 use bevy_comics_testkit::{
@@ -118,61 +118,13 @@ pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
         .id()
 }
 
-/// Times the engine's passes with and without a depth prepass, which may cost or save time.
-fn prepass(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(640, 360)
-    };
-    let mut table = Table::new(&["scene", "prepass", "round", "milliseconds"]);
-    let scenes = BuiltIn::MEASURED.into_iter().map(Some).chain([None]);
-    for scene in scenes.skip(if run.quick {
-        BuiltIn::MEASURED.len()
-    } else {
-        0
-    }) {
-        let name = scene.map_or("a million vertices", BuiltIn::name);
-        let mut rig = Rig::new(scene, size);
-        if scene.is_none() {
-            ball(&mut rig, if run.quick { 10_000 } else { 1_000_000 });
-        }
-        for round in 0..=run.rounds {
-            for with in ["no", "yes"] {
-                let mut camera = rig.headless.app.world_mut().entity_mut(rig.camera);
-                match with {
-                    "yes" => camera.insert(DepthPrepass),
-                    _ => camera.remove::<DepthPrepass>(),
-                };
-                rig.headless.step(3);
-                let laps = bench::laps(&mut rig.headless, run.frames);
-                let mut sums: Vec<f64> = laps
-                    .iter()
-                    .map(|l| l[bench::Lap::Prepass as usize] + l[bench::Lap::Main as usize])
-                    .collect();
-                sums.sort_by(f64::total_cmp);
-                if round > 0 {
-                    let ms = format!("{:.4}", sums[sums.len() / 2]);
-                    table.push(&[&name, &with, &round, &ms]);
-                }
-            }
-        }
-        run.say(&format!("{name}: prepass timed"));
-    }
-    run.save("prepass_times", &table)
-}
-
 pub fn measure(run: &Run) -> Result<(), String> {
     let mut styles = run.some(2, work::ladder());
     if run.quick {
         // With lines, and everything else.
         styles.extend(work::ladder().pop());
     }
-    let size = if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(1280, 720)
-    };
+    let size = run.size([320, 180], [1280, 720]);
     let variants: Vec<(String, Drawn)> = styles
         .iter()
         .map(|(name, style)| (name.replace(',', ";"), Drawn::style(style.clone())))
@@ -183,7 +135,6 @@ pub fn measure(run: &Run) -> Result<(), String> {
     rig::record(run, &mut times, "ladder", "teapot", &mut rig, &variants);
     run.save("ladder_times", &times)?;
     idle(run)?;
-    prepass(run)?;
 
     // The same on every adapter, so it is last where the time is short.
     let mut counted = Table::new(&WORK);

@@ -9,18 +9,15 @@
 //! ```
 
 mod arguments;
-mod bare;
 mod capture;
 mod costs;
 mod document;
-mod encodings;
 mod flicker;
 mod growth;
 mod ink;
 mod ladder;
 mod lines;
 mod many_objects;
-mod meadow;
 mod models;
 mod page;
 mod page_styles;
@@ -34,7 +31,6 @@ mod sections;
 mod soak;
 mod stability;
 mod stamp;
-mod steps;
 mod straight;
 mod table;
 mod toon;
@@ -50,6 +46,7 @@ use std::{
 };
 
 use arguments::Arguments;
+use bevy::math::UVec2;
 use bevy_comics_testkit::{
     bench,
     headless::{self, Headless, HeadlessOptions},
@@ -82,6 +79,11 @@ impl Run {
     pub fn some<T>(&self, few: usize, all: impl IntoIterator<Item = T>) -> Vec<T> {
         let count = if self.quick { few } else { usize::MAX };
         all.into_iter().take(count).collect()
+    }
+
+    /// The size of pictures in a quick run, or in any other.
+    pub fn size(&self, quick: [u32; 2], size: [u32; 2]) -> UVec2 {
+        (if self.quick { quick } else { size }).into()
     }
 
     /// The same with another number of rounds.
@@ -200,7 +202,7 @@ fn machine(run: &Run) -> Result<(), String> {
     let adapter = headless::adapter()?;
     let headless = Headless::new(
         HeadlessOptions {
-            size: bevy::math::UVec2::new(16, 16),
+            size: UVec2::new(16, 16),
             ..Default::default()
         },
         bevy_comics::ComicsPlugin,

@@ -118,16 +118,8 @@ fn mark<M: Component + Clone>(rig: &mut Rig, mark: M) {
     }
 }
 
-fn size(run: &Run) -> UVec2 {
-    if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(1280, 720)
-    }
-}
-
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = size(run);
+    let size = run.size([320, 180], [1280, 720]);
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
@@ -179,7 +171,7 @@ impl Part {
     }
 
     fn rig(&self, run: &Run, change: fn(&mut Rig)) -> Rig {
-        let mut rig = Rig::new(Some(self.scene), size(run));
+        let mut rig = Rig::new(Some(self.scene), run.size([320, 180], [1280, 720]));
         rig.unlight();
         change(&mut rig);
         rig.headless.step(if run.quick { 5 } else { 30 });

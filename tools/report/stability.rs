@@ -314,11 +314,7 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
 }
 
 fn rendered(table: &mut Table, run: &Run) {
-    let size = if run.quick {
-        UVec2::new(96, 64)
-    } else {
-        UVec2::new(320, 200)
-    };
+    let size = run.size([96, 64], [320, 200]);
     let style = everything();
     let sketch = style.clone().with(Sketch::default());
     for (name, scene) in run.some(3, rendered_cases()) {
@@ -364,11 +360,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("stability", &table)?;
 
     // The same scene, scaled or moved: the picture should not change.
-    let size = if run.quick {
-        UVec2::new(96, 64)
-    } else {
-        UVec2::new(320, 200)
-    };
+    let size = run.size([96, 64], [320, 200]);
     let mut moved = Table::new(&["case", "flip"]);
     let shoot = |scale: f32, origin: Vec3| {
         let mut rig = Rig::new(None, size);

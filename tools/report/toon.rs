@@ -170,11 +170,7 @@ fn set_light(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(100, 70)
-    } else {
-        UVec2::new(400, 280)
-    };
+    let size = run.size([100, 70], [400, 280]);
     let mut times = Table::new(&["scene", "variant", "width", "height", "round", "main"]);
     for scene in run.some(1, [BuiltIn::Theatre, BuiltIn::Teapot]) {
         let mut rig = Rig::new(Some(scene), size);

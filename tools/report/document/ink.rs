@@ -55,7 +55,6 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         });
         let _ = writeln!(out, "| {model} | {} |", cells.join(" | "));
     }
-    dash_steps(out, folder)?;
     let table = load(folder, "ink_memory")?;
     out.push_str(
         "\nA still view under the engine's temporal anti-aliasing, of a scene that is white except for its lines: pixels that change by more than two codes \
@@ -73,59 +72,6 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push('\n');
-    meadow(out, folder)
-}
-
-/// What the lines of presets cover of a meadow.
-fn meadow(out: &mut String, folder: &Path) -> Result<(), String> {
-    out.push_str("### Ink of a meadow\n\n");
-    if !folder.join("meadow_ink.csv").exists() {
-        out.push_str("Not measured yet: `report --only meadow`.\n\n");
-        return Ok(());
-    }
-    out.push_str(
-        "The fraction of the meadow of `mountains` that the lines of each preset cover, drawn in black on white, \
-         without the rest of the preset: the mean, and that of the area of 32x32 pixels that has most. Faithful lines \
-         have no budget.\n\n| | budget | mean | most | mean without a budget | most |\n|---|---|---|---|---|---|\n",
-    );
-    let table = load(folder, "meadow_ink")?;
-    for row in &table.rows {
-        let budget = match (table.cell(row, "form"), table.cell(row, "budget")) {
-            ("faithful", _) => "none: faithful",
-            (_, "1") => "none",
-            (_, budget) => budget,
-        };
-        let [mean, most, free, most_free] =
-            ["mean", "most", "mean_free", "most_free"].map(|column| table.number(row, column));
-        let preset = table.cell(row, "preset");
-        let _ = writeln!(
-            out,
-            "| {preset} | {budget} | {mean:.2} | {most:.2} | {free:.2} | {most_free:.2} |"
-        );
-    }
-    out.push('\n');
-    Ok(())
-}
-
-/// The organic model, with one setting changed at a time.
-fn dash_steps(out: &mut String, folder: &Path) -> Result<(), String> {
-    if !folder.join("ink_dash_steps.csv").exists() {
-        out.push_str(
-            "\nOne setting changed at a time: not measured yet, `report --only dash-steps`.\n",
-        );
-        return Ok(());
-    }
-    let table = load(folder, "ink_dash_steps")?;
-    out.push_str(
-        "\nThe organic model with one setting changed at a time, from the continued lines:\n\n| changed | dashes | of these at true ends | by chance |\n|---|---|---|---|\n",
-    );
-    for row in &table.rows {
-        let length = table.number(row, "true").max(1.0);
-        let [all, ends, chance] = ["ends", "true_ends", "by_chance"]
-            .map(|column| 50.0 * table.number(row, column) / length);
-        let name = table.cell(row, "method");
-        let _ = writeln!(out, "| {name} | {all:.2} | {ends:.2} | {chance:.2} |");
-    }
     Ok(())
 }
 

@@ -11,7 +11,6 @@ mod parts;
 mod precision;
 mod scenes;
 mod soak;
-mod steps;
 mod target;
 mod targets;
 mod toon;
@@ -45,8 +44,9 @@ pub fn render(folder: &Path) -> Result<String, String> {
     }
     out.push_str(
         "\n`peers` is a program of its own, whose dependencies are built without optimisation \
-         (`opt-level` 0; all else is built with 1): it compares crates with each other, and its times \
-         do not compare with those of other sections.\n\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
+         (`opt-level` 0): it compares crates with each other, and its times do not compare with those of other \
+         sections. The profile of these is in docs/benchmarks.md; until 26 November 2026, all of them were built with \
+         `opt-level` 1.\n\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
          with it, less that of the frame without it; the tables give the median of all rounds. \
          Ratios are to a copying pass of the same size in the same round (\"blits\"): the median, \
          and in some tables the 10th and 90th percentile of the rounds. \"blit again\" is the \
@@ -91,9 +91,7 @@ fn body(folder: &Path) -> Result<String, String> {
     targets::targets(&mut out, folder)?;
     out.push_str("## 1. Error against run time\n\n");
     precision::ranges(&mut out, folder)?;
-    precision::encodings(&mut out, folder)?;
     precision::lines(&mut out, folder)?;
-    steps::steps(&mut out, folder)?;
     page::page(&mut out, folder)?;
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;

@@ -1,118 +1,37 @@
-//! The report's text: error against run time of the range, of stored depth and of lines.
+//! The report's text: the range, and what lines find and cost.
 
 use std::{fmt::Write, path::Path};
 
 use crate::{
-    costs::{OWN, bare_costs, cost_table, costs, line_score, size},
+    costs::{OWN, cost_table, costs, line_score, size},
     load,
     scores::SAME_RULE,
-    table::{Table, largest},
+    table::Table,
 };
 
 pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
-    let errors = load(folder, "range_errors")?;
     let times = load(folder, "range_times")?;
-    let bare = load(folder, "range_bare_times")?;
-    out.push_str(
-        "### The range\n\nErrors of the range in frames of a moving camera. All but `wrong \
-         band` are the largest of these frames. `near` and `far` are relative errors of a \
-         distance, `map` is the error of the depth map at the worst pixel, and FLIP the mean \
-         difference of the picture (desaturation and colorization at full strength). `wrong \
-         band` is the mean fraction of the pixels that are in a wrong one of eight equal bands \
-         of the map. Most of the `wires` are narrower than a pixel, most of the `specks` a few \
-         pixels wide. `rotating 4` reads a sixteenth of the pixels in every frame and takes the \
-         extremes of sixteen frames. Percentiles are not an approximation: they leave outliers \
-         out, and the error is the effect of that.\n\n\
-         | scene | method | near | far | map | wrong band | FLIP |\n|---|---|---|---|---|---|---|\n",
-    );
-    let all: Vec<&Vec<String>> = errors.rows.iter().collect();
-    for scene in errors.distinct(&all, "scene") {
-        for method in errors.distinct(&all, "method") {
-            let rows = errors.matching(&[("scene", &scene), ("method", &method)]);
-            let of = |name| errors.numbers(&rows, name);
-            let band = of("band");
-            let _ = writeln!(
-                out,
-                "| {scene} | {method} | {:.1e} | {:.1e} | {:.1e} | {:.2} % | {:.4} |",
-                largest(&of("near")),
-                largest(&of("far")),
-                largest(&of("map")),
-                100.0 * band.iter().sum::<f64>() / band.len() as f64,
-                largest(&of("flip")),
-            );
-        }
-    }
     let _ = writeln!(
         out,
-        "\nTime of the crate's reductions at {}, in the app (the passes of the range alone; \
+        "### The range\n\nTime of the crate's reductions at {}, in the app (the passes of the range alone; \
          every exact method gives the same bits):\n",
         size(&times)
     );
-    cost_table(out, &costs(&times, "ranges", "teapot", &["range"]));
-    let _ = writeln!(
-        out,
-        "Time of the strided scans at {}, on a device without the engine (stride 1 is a full \
-         scan, without the texture gathers of the crate's own):\n\n| | ms | blits |\n|---|---|---|",
-        size(&bare)
-    );
-    for (name, ms, ratio) in bare_costs(&bare, "method") {
-        let _ = writeln!(out, "| {name} | {ms:.3} | {ratio:.3} |");
-    }
-    let whole = costs(&times, "ranges", "teapot", &["range"]);
-    let exact = whole.iter().find(|c| c.name == "BarrierFree");
-    if let Some(exact) = exact {
+    let all = costs(&times, "ranges", "teapot", &["range"]);
+    cost_table(out, &all);
+    if let Some(exact) = all.iter().find(|cost| cost.name == "BarrierFree") {
         let _ = writeln!(
             out,
-            "\nThe exact range takes {:.2} blits (barrier-free). A cheaper method cannot save \
-             more than that, and the error of each is unbounded for objects that are thinner \
-             than its stride: the crate offers none of them. It does offer percentiles, in \
-             `DepthMap::smoothing`.\n\n\
-             ![Error of the map against time](range.svg)\n",
+            "The exact range takes {:.2} blits (barrier-free), which is all that a cheaper one could save. \
+             docs/internals/measurements.md has what it would lose.\n",
             exact.ratio[1]
         );
     }
     Ok(())
 }
 
-pub fn encodings(out: &mut String, folder: &Path) -> Result<(), String> {
-    let errors = load(folder, "encoding_errors")?;
-    let times = load(folder, "encoding_times")?;
-    let _ = writeln!(
-        out,
-        "### Stored depth\n\nA depth map that is computed from a stored copy of the depth, in \
-         several formats: the worst of the first frames of all scenes, compared with the exact \
-         map of the rendered depths. The time is that of storing the copy and computing the map \
-         at {}. The crate stores no copy: it reads the depth texture, as in the first row.\n\n\
-         | | map, worst scene | wrong band, worst | FLIP, worst | ms | blits |\n\
-         |---|---|---|---|---|---|",
-        size(&times)
-    );
-    for (name, ms, ratio) in bare_costs(&times, "encoding") {
-        if name.starts_with("blit") {
-            continue;
-        }
-        // A copy in f32 has the same values as the depth texture.
-        let stored = if name.starts_with("none") {
-            "f32 depth"
-        } else {
-            &name
-        };
-        let rows = errors.matching(&[("encoding", stored)]);
-        let _ = writeln!(
-            out,
-            "| {name} | {:.1e} | {:.2} % | {:.4} | {ms:.2} | {ratio:.2} |",
-            largest(&errors.numbers(&rows, "map")),
-            100.0 * largest(&errors.numbers(&rows, "band")),
-            largest(&errors.numbers(&rows, "flip")),
-        );
-    }
-    out.push_str("\n![Error of the encodings against time](encoding.svg)\n\n");
-    Ok(())
-}
-
 pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     let scores = load(folder, "line_scores")?;
-    let smooth = load(folder, "smoothing_errors")?;
     let times = load(folder, "line_times")?;
     let costs_of = costs(&times, "lines", "teapot", &OWN);
     let _ = writeln!(
@@ -156,64 +75,7 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     models(out, folder)?;
     super::ink::ink(out, folder)?;
     super::ink::straight(out, folder)?;
-    out.push_str(
-        "### Anti-aliasing of bands and lines\n\nErrors against the same style at eight times the \
-         resolution. `hard` has no softness, `derivative` is the crate's own softness. `2x2 \
-         samples` draws four times the pixels and takes their mean; its time is that of this \
-         crate's passes at twice the width and height, without the rest of the frame, which \
-         would have four times the pixels too.\n\n\
-         | | | FLIP | RMS, codes | ms | blits |\n|---|---|---|---|---|---|\n",
-    );
-    let fine = costs(&times, "2x2", "teapot", &OWN);
-    let blit = costs_of.iter().find(|c| c.name == "blit");
-    let blit = blit.map_or(f64::NAN, |b| b.milliseconds);
-    for row in &smooth.rows {
-        let (what, method) = (smooth.cell(row, "what"), smooth.cell(row, "method"));
-        let name = match method {
-            "2x2 samples" if what == "silhouettes" => "silhouettes".to_owned(),
-            "2x2 samples" => format!("{what} hard"),
-            _ if what == "silhouettes" => "silhouettes".to_owned(),
-            _ => format!("{what} {method}"),
-        };
-        let from = if method == "2x2 samples" {
-            &fine
-        } else {
-            &costs_of
-        };
-        let ms = from
-            .iter()
-            .find(|c| c.name == name)
-            .map_or(f64::NAN, |c| c.milliseconds);
-        let ratio = ms / blit;
-        let _ = writeln!(
-            out,
-            "| {what} | {method} | {:.4} | {:.2} | {ms:.2} | {ratio:.2} |",
-            smooth.number(row, "flip"),
-            smooth.number(row, "codes"),
-        );
-    }
-    out.push('\n');
-    softness(out, &smooth);
     Ok(())
-}
-
-/// In how many cases the crate's softness is nearer to the fine picture than none.
-fn softness(out: &mut String, smooth: &Table) {
-    let of = |row: &&Vec<String>, column| {
-        let what = smooth.cell(row, "what");
-        let hard = smooth.matching(&[("what", what), ("method", "hard")]);
-        let hard = hard.first().map(|hard| smooth.number(hard, column));
-        hard.is_some_and(|hard| smooth.number(row, column) < hard)
-    };
-    let soft = smooth.matching(&[("method", "derivative")]);
-    let [by_flip, by_codes] =
-        ["flip", "codes"].map(|column| soft.iter().filter(|row| of(row, column)).count());
-    let _ = writeln!(
-        out,
-        "Of {} cases, the softness is nearer to the fine picture than `hard` in {by_codes} by RMS, and in \
-         {by_flip} by FLIP. Blits are the ratio of the medians here.\n",
-        soft.len()
-    );
 }
 
 /// Scores of all outlines, and fragments, by scene.

@@ -146,41 +146,7 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
             quantile(&ms, 0.9)
         );
     }
-    let prepass = load(folder, "prepass_times")?;
-    out.push_str(
-        "\n### Depth from a prepass, or from the main pass?\n\nThe time of the engine's prepass \
-         and main pass together, with and without a depth prepass. An effect that reads no more \
-         than depth could read the depth of the main pass instead.\n\n\
-         | scene | without, ms | with, ms | with / without |\n|---|---|---|---|\n",
-    );
-    let all: Vec<&Vec<String>> = prepass.rows.iter().collect();
-    let (mut won, mut lost) = (0, 0);
-    for scene in prepass.distinct(&all, "scene") {
-        let of = |with| {
-            let rows = prepass.matching(&[("scene", &scene), ("prepass", with)]);
-            prepass.numbers(&rows, "milliseconds")
-        };
-        let (without, with) = (of("no"), of("yes"));
-        let ratios: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a / b).collect();
-        if median(&ratios) < 1.0 {
-            won += 1;
-        } else {
-            lost += 1;
-        }
-        let _ = writeln!(
-            out,
-            "| {scene} | {:.1} | {:.1} | {:.2} |",
-            median(&without),
-            median(&with),
-            median(&ratios)
-        );
-    }
-    let _ = writeln!(
-        out,
-        "\nThe prepass saves more time than it takes in {won} of {} scenes, because the main pass \
-         then shades no pixel that is hidden.\n",
-        won + lost
-    );
+    out.push('\n');
     Ok(())
 }
 
