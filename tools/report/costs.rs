@@ -100,7 +100,7 @@ pub fn size(times: &Table) -> String {
 /// (recall, precision, F1) of a detector over all scenes.
 pub fn line_score(scores: &Table, detector: &str, truth: &str) -> [f64; 3] {
     let rows = scores.matching(&[("detector", detector), ("truth", truth)]);
-    let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+    let sum = |name| scores.sum(&rows, name);
     let recall = sum("found") / sum("true").max(1.0);
     let precision = sum("right") / sum("drawn").max(1.0);
     let f1 = 2.0 * recall * precision / (recall + precision).max(1e-9);

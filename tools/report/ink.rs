@@ -21,7 +21,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     models::Studio,
-    rig::{Drawn, Rig},
+    rig::{Drawn, Rig, middle_of},
     table::Table,
 };
 
@@ -35,11 +35,7 @@ const ELSEWHERE: [i64; 2] = [44, -36];
 /// Ends of lines on models that turn, with and without continuing along weak edges; and how many
 /// of them are where true lines end.
 pub fn dashes(run: &Run) -> Result<(), String> {
-    let (frames, size) = if run.quick {
-        (2, UVec2::new(120, 68))
-    } else {
-        (90, UVec2::new(240, 136))
-    };
+    let (frames, size) = (run.pick(2, 90), run.size([120, 68], [240, 136]));
     let mut table = Table::new(&["model", "method", "ends", "true", "true_ends", "by_chance"]);
     let mut fine = Studio::new(size * FINE, ids_alone());
     let whole = Outlines {
@@ -162,11 +158,8 @@ fn whiten(rig: &mut Rig) {
 
 /// Pixels that change by more than two codes from frame to frame, and the time of a frame.
 pub fn memory(run: &Run) -> Result<(), String> {
-    let (settled, frames, timed, size) = if run.quick {
-        (4, 2, 1, UVec2::new(160, 90))
-    } else {
-        (150, 64, 21, UVec2::new(640, 360))
-    };
+    let (settled, frames, timed) = run.pick((4, 2, 1), (150, 64, 21));
+    let size = run.size([160, 90], [640, 360]);
     let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
     let lines = |history_weight: f32| {
         Drawn::style(ComicStyle::new().with(Outlines {
@@ -202,16 +195,13 @@ pub fn memory(run: &Run) -> Result<(), String> {
                 changed += before.pixels().zip(now.pixels()).filter(differ).count();
                 before = now;
             }
-            let mut times: Vec<f64> = (0..timed)
-                .map(|_| {
-                    let start = Instant::now();
-                    rig.headless.step(1);
-                    1e3 * start.elapsed().as_secs_f64()
-                })
-                .collect();
-            times.sort_by(f64::total_cmp);
+            let times = (0..timed).map(|_| {
+                let start = Instant::now();
+                rig.headless.step(1);
+                1e3 * start.elapsed().as_secs_f64()
+            });
+            let ms = format!("{:.4}", middle_of(times));
             let pixels = frames * (size.x * size.y) as usize;
-            let ms = format!("{:.4}", times[times.len() / 2]);
             table.push(&[&scene.name(), method, &changed, &pixels, &ms]);
         }
         run.say(&format!("{}: changes counted", scene.name()));

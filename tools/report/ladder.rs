@@ -12,7 +12,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{self, Drawn, Rig},
+    rig::{self, Rig},
     table::Table,
 };
 
@@ -63,28 +63,22 @@ fn idle(run: &Run) -> Result<(), String> {
         "without the plugin again",
     ] {
         let options = bench::options(size);
-        let mut headless = if name == "idle plugin" {
-            Headless::new(options, ComicsPlugin)
-        } else {
-            Headless::new(options, ())
+        let mut headless = match name {
+            "idle plugin" => Headless::new(options, ComicsPlugin),
+            _ => Headless::new(options, ()),
         };
         let target = headless.render_target();
         let world = headless.app.world_mut();
-        let mesh = world
-            .resource_mut::<Assets<Mesh>>()
-            .add(Cuboid::from_length(1.0));
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(StandardMaterial::default());
-        world.spawn((Mesh3d(mesh), MeshMaterial3d(material)));
+        let mesh = Mesh3d(world.add_asset(Cuboid::from_length(1.0)));
+        let material = world.add_asset::<StandardMaterial>(StandardMaterial::default());
+        world.spawn((mesh, MeshMaterial3d(material)));
         let at = Transform::from_xyz(2.0, 2.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y);
         world.spawn((Camera3d::default(), at, target, Msaa::Off));
         headless.step(10);
         apps.push((name, headless));
     }
     let mut table = Table::new(&["app", "round", "milliseconds"]);
-    let rounds = if run.quick { 10 } else { 300 };
-    for round in 0..rounds {
+    for round in 0..run.pick(10, 300) {
         for (name, headless) in &mut apps {
             let ms = bench::whole_frame(headless);
             table.push(&[name, &round, &format!("{ms:.4}")]);
@@ -95,27 +89,14 @@ fn idle(run: &Run) -> Result<(), String> {
 }
 
 /// Spawns a lit ball of about `vertices` vertices in the middle of the view.
-pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
+pub fn ball(rig: &mut Rig, vertices: u32) {
     let side = (f64::from(vertices).sqrt().round() as u32).max(4);
-    let world = rig.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Sphere::new(1.0).mesh().uv(side - 1, side - 1));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgb(0.7, 0.4, 0.3),
-            ..default()
-        });
+    let material = StandardMaterial::from_color(Color::srgb(0.7, 0.4, 0.3));
     let light = DirectionalLight::default();
+    let world = rig.headless.app.world_mut();
     world.spawn((light, Transform::from_rotation(Quat::from_rotation_x(-0.7))));
-    world
-        .spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
-            Transform::from_xyz(0.0, 0.0, -3.0),
-        ))
-        .id()
+    let mesh = Sphere::new(1.0).mesh().uv(side - 1, side - 1);
+    rig.put(mesh, material, Transform::from_xyz(0.0, 0.0, -3.0));
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -125,10 +106,8 @@ pub fn measure(run: &Run) -> Result<(), String> {
         styles.extend(work::ladder().pop());
     }
     let size = run.size([320, 180], [1280, 720]);
-    let variants: Vec<(String, Drawn)> = styles
-        .iter()
-        .map(|(name, style)| (name.replace(',', ";"), Drawn::style(style.clone())))
-        .collect();
+    let named = styles.iter().cloned();
+    let variants = rig::styles(named.map(|(name, style)| (name.replace(',', ";"), style)));
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();

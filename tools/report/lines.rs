@@ -4,7 +4,7 @@ use bevy_comics_testkit::scenes::BuiltIn;
 
 use crate::{
     Run,
-    rig::{self, Drawn, Rig},
+    rig::{self, Rig},
     scores::{detectors, score},
 };
 
@@ -12,10 +12,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     score(run)?;
     let mut rig = Rig::new(Some(BuiltIn::Teapot), run.size([320, 180], [1280, 720]));
     rig.unlight();
-    let detectors = run.some(2, detectors()).into_iter();
-    let variants: Vec<_> = detectors
-        .map(|(name, style)| (name, Drawn::style(style)))
-        .collect();
+    let variants = rig::styles(run.some(2, detectors()));
     let mut times = rig::times();
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &variants);
     run.save("line_times", &times)

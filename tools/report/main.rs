@@ -81,9 +81,14 @@ impl Run {
         all.into_iter().take(count).collect()
     }
 
+    /// What a quick run has, or any other.
+    pub fn pick<T>(&self, quick: T, all: T) -> T {
+        if self.quick { quick } else { all }
+    }
+
     /// The size of pictures in a quick run, or in any other.
     pub fn size(&self, quick: [u32; 2], size: [u32; 2]) -> UVec2 {
-        (if self.quick { quick } else { size }).into()
+        self.pick(quick, size).into()
     }
 
     /// The same with another number of rounds.

@@ -399,12 +399,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     ]
     .concat();
     let mut table = Table::new(&header);
-    let counts: &[usize] = if run.quick {
-        &[1, 100]
-    } else {
-        &[1, 1_000, 10_000, 20_000, 60_000, 100_000]
-    };
-    let frames = if run.quick { 1 } else { 9 };
+    let all = [1, 1_000, 10_000, 20_000, 60_000, 100_000];
+    let counts = run.pick(vec![1, 100], all.into());
+    let frames = run.pick(1, 9);
     // The apps without the plugin are timed once more in the end: that shows the noise.
     let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));
     let variants = Variant::ALL.map(|variant| (variant, false));
@@ -413,7 +410,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let groups: Vec<_> = variants
         .chunk_by(|(a, _), (b, _)| a.takes_turns() && b.takes_turns())
         .collect();
-    for &count in counts {
+    for count in counts {
         for group in &groups {
             measure_group(run, &mut table, count, group, frames);
         }

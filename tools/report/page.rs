@@ -65,13 +65,9 @@ fn lightness_error(mode: HarmonyMode) -> f64 {
 /// Tones, jumps and moire of all screens.
 fn screens(run: &Run) -> Table {
     let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
-    let periods = if run.quick {
-        &CELL_SIZES[2..3]
-    } else {
-        &CELL_SIZES
-    };
+    let periods = run.pick(&CELL_SIZES[2..3], &CELL_SIZES[..]).to_vec();
     for shape in run.some(1, SHAPES) {
-        for &period in periods {
+        for &period in &periods {
             let (tone, ..) = tone_error(shape, period);
             let (jump, _) = largest_jump(shape, period);
             let angles = [0.0, 15.0, 45.0];

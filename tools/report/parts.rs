@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Outlines of which one thing differs from the default.
-fn lines() -> Vec<(String, Drawn)> {
+fn lines() -> Vec<(&'static str, ComicStyle)> {
     let default = Outlines::default();
     [
         ("outlines", default),
@@ -89,7 +89,6 @@ fn lines() -> Vec<(String, Drawn)> {
     .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
     .into_iter()
     .chain([("and depth layers", layer_lines())])
-    .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
     .collect()
 }
 
@@ -100,20 +99,10 @@ fn layer_lines() -> ComicStyle {
     ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
-/// Effects of the page.
-fn page() -> Vec<(String, Drawn)> {
-    page_styles::all()
-        .into_iter()
-        .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
-        .collect()
-}
-
 /// Marks every mesh of the scene.
 fn mark<M: Component + Clone>(rig: &mut Rig, mark: M) {
-    let world = rig.headless.app.world_mut();
-    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-    let meshes: Vec<Entity> = meshes.iter(world).collect();
-    for mesh in meshes {
+    for mesh in rig.meshes() {
+        let world = rig.headless.app.world_mut();
         world.entity_mut(mesh).insert(mark.clone());
     }
 }
@@ -123,9 +112,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
-    let styles = run.some(2, lines());
+    let styles = rig::styles(run.some(2, lines()));
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &styles);
-    let styles = run.some(4, page());
+    let styles = rig::styles(run.some(4, page_styles::all()));
     rig::record(run, &mut times, "page", "teapot", &mut rig, &styles);
     let variants = [
         ("nothing marked", Drawn::Nothing),
@@ -269,9 +258,7 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
     for part in run.some(2, changes()) {
         let mut changed = part.rig(run, part.change);
         let mut base = part.base.map(|change| part.rig(run, change));
-        let named =
-            |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Drawn::style(style.clone()));
-        let variants: Vec<_> = part.styles.iter().map(named).collect();
+        let variants = rig::styles(part.styles.iter().cloned());
         let scene = part.scene.name();
         for _ in 0..rounds {
             if let Some(base) = &mut base {
@@ -283,12 +270,6 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
         }
     }
     run.save("scene_part_times", &times)
-}
-
-fn meshes(rig: &mut Rig) -> Vec<Entity> {
-    let world = rig.headless.app.world_mut();
-    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-    meshes.iter(world).collect()
 }
 
 /// Widths of 0.5 to 1.5, alternating from vertex to vertex.
@@ -306,7 +287,7 @@ fn widths(rig: &mut Rig) {
 
 /// Lines of 1, 2 and 3 pixels, in turn from mesh to mesh.
 fn own_widths(rig: &mut Rig) {
-    let all = meshes(rig);
+    let all = rig.meshes();
     let world = rig.headless.app.world_mut();
     for (i, mesh) in all.into_iter().enumerate() {
         let style = OutlineStyle {
@@ -348,7 +329,7 @@ fn fog(rig: &mut Rig) {
 
 /// Makes the mesh with most vertices transparent. Returns it.
 fn turn_to_glass(rig: &mut Rig) -> Option<Entity> {
-    let all = meshes(rig);
+    let all = rig.meshes();
     let world = rig.headless.app.world_mut();
     let count = |entity: &Entity| {
         let mesh = world.get::<Mesh3d>(*entity);
@@ -380,7 +361,7 @@ fn glass_in_depth(rig: &mut Rig) {
 }
 
 fn unstyled(rig: &mut Rig) {
-    if let Some(mesh) = meshes(rig).first() {
+    if let Some(mesh) = rig.meshes().first() {
         let world = rig.headless.app.world_mut();
         world.entity_mut(*mesh).insert(NoStyle::default());
     }

@@ -163,9 +163,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
     let scores = load(folder, "line_scores")?;
     let times = load(folder, "line_times")?;
     let costs_of = costs(&times, "lines", "teapot", &OWN);
-    let all: Vec<&Vec<String>> = scores.rows.iter().collect();
     let points: Vec<Point> = scores
-        .distinct(&all, "detector")
+        .values("detector")
         .into_iter()
         .filter_map(|name| {
             let cost = costs_of.iter().find(|c| c.name == name)?;
@@ -205,9 +204,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
     )?;
 
     let flicker = load(folder, "flicker")?;
-    let all: Vec<&Vec<String>> = flicker.rows.iter().collect();
     let points: Vec<Point> = flicker
-        .distinct(&all, "variant")
+        .values("variant")
         .into_iter()
         .map(|variant| {
             let rows = flicker.matching(&[("variant", &variant)]);

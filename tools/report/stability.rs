@@ -14,7 +14,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run, capture,
-    rig::{Drawn, Rig},
+    rig::{Drawn, Rig, unlit},
     table::Table,
 };
 
@@ -224,28 +224,11 @@ fn everything() -> ComicStyle {
 
 type Scene = fn(&mut Rig);
 
-fn put(rig: &mut Rig, mesh: Mesh, color: LinearRgba, at: Transform) {
-    let world = rig.headless.app.world_mut();
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: color.into(),
-            unlit: true,
-            ..default()
-        });
-    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
-}
-
 fn cubes(rig: &mut Rig, color: LinearRgba, scale: f32, origin: Vec3) {
     for (x, z) in [(-1.2, -4.0), (0.8, -6.0), (0.2, -20.0)] {
-        put(
-            rig,
-            Cuboid::from_length(scale).into(),
-            color,
-            Transform::from_translation(origin + scale * Vec3::new(x, 0.1, z))
-                .with_rotation(Quat::from_rotation_y(0.6)),
-        );
+        let at = Transform::from_translation(origin + scale * Vec3::new(x, 0.1, z));
+        let at = at.with_rotation(Quat::from_rotation_y(0.6));
+        rig.put(Cuboid::from_length(scale), unlit(color), at);
     }
     let world = rig.headless.app.world_mut();
     world
@@ -259,13 +242,13 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
         ("all sky", |_| {}),
         ("one pixel of geometry", |rig| {
             let at = Transform::from_xyz(0.003, 0.003, -5.0);
-            put(rig, Cuboid::from_length(0.02).into(), GREY, at);
+            rig.put(Cuboid::from_length(0.02), unlit(GREY), at);
         }),
         ("thin wires", |rig| {
             for i in 0..40u8 {
                 let x = 0.05 * f32::from(i) - 1.0;
                 let at = Transform::from_xyz(x, 0.0, -2.0 - 0.2 * f32::from(i));
-                put(rig, Cuboid::new(0.001, 2.0, 0.001).into(), GREY, at);
+                rig.put(Cuboid::new(0.001, 2.0, 0.001), unlit(GREY), at);
             }
         }),
         ("HDR colour of 65504", |rig| {
@@ -291,7 +274,7 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
             let mut mesh: Mesh = Cuboid::from_length(1.0).into();
             let count = mesh.count_vertices();
             mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0f32; 3]; count]);
-            put(rig, mesh, GREY, Transform::from_xyz(0.2, 0.1, -4.0));
+            rig.put(mesh, unlit(GREY), Transform::from_xyz(0.2, 0.1, -4.0));
         }),
         ("a world a millionth the size", |rig| {
             cubes(rig, GREY, 1e-6, Vec3::ZERO);

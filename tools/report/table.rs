@@ -92,6 +92,16 @@ impl Table {
         found
     }
 
+    /// The different cells of a column, in order of first appearance.
+    pub fn values(&self, name: &str) -> Vec<String> {
+        self.distinct(&self.matching(&[]), name)
+    }
+
+    /// The sum of a column in some rows.
+    pub fn sum(&self, rows: &[&Vec<String>], name: &str) -> f64 {
+        self.numbers(rows, name).iter().sum()
+    }
+
     pub fn numbers(&self, rows: &[&Vec<String>], name: &str) -> Vec<f64> {
         rows.iter().map(|row| self.number(row, name)).collect()
     }

@@ -174,11 +174,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut times = Table::new(&["scene", "variant", "width", "height", "round", "main"]);
     for scene in run.some(1, [BuiltIn::Theatre, BuiltIn::Teapot]) {
         let mut rig = Rig::new(Some(scene), size);
-        let camera = rig.camera;
+        let (camera, meshes) = (rig.camera, rig.meshes());
         let world = rig.headless.app.world_mut();
         world.entity_mut(camera).insert(DepthPrepass);
-        let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-        let meshes: Vec<Entity> = meshes.iter(world).collect();
         let variants = variants(&mut world.resource_mut::<Assets<Image>>());
         let variants = run.some(5, variants);
         // Round 0 compiles the variants, and is not counted.

@@ -36,8 +36,7 @@ fn ranges(folder: &Path) -> Option<String> {
 fn stability(folder: &Path) -> Option<String> {
     let table = load(folder, "stability").ok()?;
     let ulp = worst(&table, ("kind", "depth map"), "ulp");
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
-    let wild: f64 = table.numbers(&all, "wild").iter().sum();
+    let wild = table.sum(&table.matching(&[]), "wild");
     Some(format!(
         "depth map: at most {ulp:.1} ulp off; {wild:.0} results are not finite"
     ))
@@ -47,7 +46,7 @@ fn flicker(folder: &Path) -> Option<String> {
     let table = load(folder, "flicker").ok()?;
     let [off, default] = ["off", "the default"].map(|variant| {
         let rows = table.matching(&[("variant", variant)]);
-        table.numbers(&rows, "mean").iter().sum::<f64>() / rows.len().max(1) as f64
+        table.sum(&rows, "mean") / rows.len().max(1) as f64
     });
     Some(format!(
         "mean change, in display codes: {off:.3} without smoothing, {default:.3} with it"

@@ -11,7 +11,7 @@ use crate::{load, table::Table};
 /// the column that counts them.
 fn dashes(table: &Table, [method, model, ends]: [&str; 3]) -> f64 {
     let rows = table.matching(&[("method", method), ("model", model)]);
-    let sum = |name| table.numbers(&rows, name).iter().sum::<f64>();
+    let sum = |name| table.sum(&rows, name);
     50.0 * sum(ends) / sum("true").max(1.0)
 }
 
@@ -37,8 +37,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
          are moved by 11 and 9 pixels: by chance.\n\n\
          | | cut | continued | of these at true ends | by chance |\n|---|---|---|---|---|\n",
     );
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
-    for model in table.distinct(&all, "model") {
+    for model in table.values("model") {
         let cells = [
             ("cut", "ends"),
             ("continued", "ends"),
@@ -91,7 +90,7 @@ fn over_accepted(table: &Table, rows: &[&Vec<String>]) -> f64 {
 /// The widths of lines that the section draws; the second is the default, and of an even number of
 /// pixels: the middles of such lines are at their edges.
 fn straight_widths(table: &Table) -> Vec<String> {
-    table.distinct(&table.rows.iter().collect::<Vec<_>>(), "width")
+    table.values("width")
 }
 
 /// The text on straight lines.
@@ -201,8 +200,7 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         return straight_targets(folder);
     }
     let table = load(folder, "ink_dashes")?;
-    let rows: Vec<&Vec<String>> = table.rows.iter().collect();
-    let shapes = table.distinct(&rows, "model");
+    let shapes = table.values("model");
     let mut all: Vec<Target> = shapes
         .into_iter()
         .map(|shape| {

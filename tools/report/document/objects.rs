@@ -39,9 +39,7 @@ fn growth(times: &Table, counts: &[String], variant: &str) -> f64 {
 
 pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "many_objects_times")?;
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let counts = times.distinct(&all, "objects");
-    let variants = times.distinct(&all, "variant");
+    let counts = times.values("objects");
     out.push_str(
         "### Many objects\n\nWhole frames of 64x64 pixels, in milliseconds, with cubes that share \
          a mesh and a material. The last column is the exponent of growth, after the time of a \
@@ -51,7 +49,7 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         let _ = write!(out, " {count} |");
     }
     let _ = writeln!(out, " exponent |\n|---|{}---|", "---|".repeat(counts.len()));
-    for variant in &variants {
+    for variant in &times.values("variant") {
         let _ = write!(out, "| {variant} |");
         for count in &counts {
             let whole = of(&times, count, variant, "whole");
@@ -100,8 +98,7 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         "\nToon materials of 1000 equal toon scenes: {most:.0}.\n"
     );
     let peers = load(folder, "peer_object_times")?;
-    let rows: Vec<_> = peers.rows.iter().collect();
-    if rows.is_empty() {
+    if peers.rows.is_empty() {
         out.push_str("Other crates were not measured on these scenes.\n\n");
         return Ok(());
     }
@@ -109,12 +106,12 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         "Other crates on the same scenes, each in an app of its own, in turns: whole frames in \
          milliseconds, and as multiples of those with the engine's prepasses.\n\n| frame |",
     );
-    let counts = peers.distinct(&rows, "objects");
+    let counts = peers.values("objects");
     for count in &counts {
         let _ = write!(out, " {count} |");
     }
     let _ = writeln!(out, "\n|---|{}", "---|".repeat(counts.len()));
-    for variant in peers.distinct(&rows, "variant") {
+    for variant in peers.values("variant") {
         let _ = write!(out, "| {variant} |");
         for count in &counts {
             let [whole, least] =

@@ -80,9 +80,8 @@ pub fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
          | sequence | smoothing | flicker, mean | worst frame | worst 99 % | lag, octaves |\n\
          |---|---|---|---|---|---|\n",
     );
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
-    for sequence in table.distinct(&all, "sequence") {
-        for variant in table.distinct(&all, "variant") {
+    for sequence in table.values("sequence") {
+        for variant in table.values("variant") {
             let rows = table.matching(&[("sequence", &sequence), ("variant", &variant)]);
             let of = |name| table.numbers(&rows, name);
             let mean = |name| of(name).iter().sum::<f64>() / rows.len() as f64;

@@ -23,7 +23,6 @@ fn largest(screens: &Table, shape: &str, fine: bool, column: &str) -> f64 {
 
 pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "page_screens")?;
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
     out.push_str(
         "### The printed page\n\nErrors of single plates, in double precision; every pixel of the \
          shader equals this within rounding (`tests/gpu/halftone.rs`). Tone: the largest difference of \
@@ -34,7 +33,7 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
          3 pixels the tone alone:\n\n\
          | screen | tone | jump | moire | tone at 3 px |\n|---|---|---|---|---|\n",
     );
-    for shape in table.distinct(&all, "what") {
+    for shape in table.values("what") {
         let of = |column| largest(&table, &shape, false, column);
         let _ = writeln!(
             out,
@@ -258,8 +257,7 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
 /// The tones of fine screens.
 pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
     let screens = load(folder, "page_screens")?;
-    let rows: Vec<&Vec<String>> = screens.rows.iter().collect();
-    let shapes = screens.distinct(&rows, "what");
+    let shapes = screens.values("what");
     let target = |shape: String| {
         let exact = ["Round", "Line", "Diamond"].contains(&shape.as_str());
         let what = format!("mean tone of {} screens at 3 px", shape.to_lowercase());

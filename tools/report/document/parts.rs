@@ -54,8 +54,7 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
 
 /// The costs of what parts of the scene ask for, each from a scene of its own.
 fn scene_parts(out: &mut String, times: &Table) {
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let sections = times.distinct(&all, "section");
+    let sections = times.values("section");
     out.push_str(
         "What parts of the scene ask for, each on a scene of its own, which is the teapot if no \
          other is named. The times include the prepass, which a camera without a style does not \
@@ -134,9 +133,8 @@ fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> Op
 /// The part of a scene that adds most to the cost of a style.
 pub fn figure(folder: &Path) -> Option<String> {
     let times = load(folder, "scene_part_times").ok()?;
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
     let mut most: Option<(String, f64)> = None;
-    for section in times.distinct(&all, "section") {
+    for section in times.values("section") {
         let Some(name) = section.strip_prefix("part: ") else {
             continue;
         };

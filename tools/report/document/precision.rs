@@ -50,12 +50,11 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
          |---|---|---|---|---|---|---|---|---|",
         size(&times)
     );
-    let all: Vec<&Vec<String>> = scores.rows.iter().collect();
-    for detector in scores.distinct(&all, "detector") {
+    for detector in scores.values("detector") {
         let [found, _, f1] = line_score(&scores, &detector, "silhouettes");
         let [all, precision, every] = line_score(&scores, &detector, "every line");
         let rows = scores.matching(&[("detector", &detector), ("truth", "every line")]);
-        let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+        let sum = |name| scores.sum(&rows, name);
         let wrong = sum("wrong") / sum("drawn").max(1.0);
         let cost = costs_of.iter().find(|c| c.name == detector);
         let cost = cost.map_or("- | -".into(), |c| {
@@ -98,7 +97,7 @@ fn by_scene(out: &mut String, folder: &Path, scores: &Table) -> Result<(), Strin
                 ("truth", "every line"),
             ];
             let rows = scores.matching(&wanted);
-            move |name| scores.numbers(&rows, name).iter().sum::<f64>()
+            move |name| scores.sum(&rows, name)
         };
         let (ours, same) = (of("all outlines"), of(SAME_RULE));
         let recall = ours("found") / ours("true").max(1.0);
@@ -126,8 +125,7 @@ fn models(out: &mut String, folder: &Path) -> Result<(), String> {
         return Ok(());
     }
     let scores = load(folder, "model_scores")?;
-    let all: Vec<&Vec<String>> = scores.rows.iter().collect();
-    let [frames, count] = ["frame", "model"].map(|column| scores.distinct(&all, column).len());
+    let [frames, count] = ["frame", "model"].map(|column| scores.values(column).len());
     let _ = writeln!(
         out,
         "### Lines of models\n\nAll outlines of {count} generated models, each turned through \
@@ -139,10 +137,10 @@ fn models(out: &mut String, folder: &Path) -> Result<(), String> {
          | | lines found | precision | F1 | false pixels | wrong pixels | fragments |\n\
          |---|---|---|---|---|---|---|"
     );
-    for model in scores.distinct(&all, "model") {
-        for distance in scores.distinct(&all, "distance") {
+    for model in scores.values("model") {
+        for distance in scores.values("distance") {
             let rows = scores.matching(&[("model", &model), ("distance", &distance)]);
-            let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+            let sum = |name| scores.sum(&rows, name);
             let recall = sum("found") / sum("true").max(1.0);
             let precision = sum("right") / sum("drawn").max(1.0);
             let _ = writeln!(

@@ -135,8 +135,7 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
          noise.\n\n\
          | | ms, median | 10 % to 90 % |\n|---|---|---|\n",
     );
-    let all: Vec<&Vec<String>> = idle.rows.iter().collect();
-    for app in idle.distinct(&all, "app") {
+    for app in idle.values("app") {
         let ms = idle.numbers(&idle.matching(&[("app", &app)]), "milliseconds");
         let _ = writeln!(
             out,

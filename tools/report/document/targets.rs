@@ -70,7 +70,7 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
 
 /// Fragments per 100 pixels of line, in rows of a table of scores.
 fn fragments(table: &Table, rows: &[&Vec<String>]) -> f64 {
-    let sum = |name| table.numbers(rows, name).iter().sum::<f64>();
+    let sum = |name| table.sum(rows, name);
     100.0 * sum("fragments") / sum("line").max(1.0)
 }
 
@@ -118,8 +118,7 @@ fn quality(folder: &Path) -> Result<Vec<Target>, String> {
         all.push(fragments_target("lines", scene, fragments(&whole, &[row])));
     }
     let models = load(folder, "model_scores")?;
-    let rows: Vec<&Vec<String>> = models.rows.iter().collect();
-    for model in models.distinct(&rows, "model") {
+    for model in models.values("model") {
         for distance in ["close", "distant"] {
             let rows = models.matching(&[("model", &model), ("distance", distance)]);
             if !rows.is_empty() {
