@@ -27,14 +27,11 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_dashes")?;
     out.push_str(
-        "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
-         above and on two shapes while they turn: half of the ends of lines, where no other line begins. \
-         `cut` lines do not continue along weak edges (`hysteresis` 0, `min_length` 1); where a line continues \
-         along a weak edge that ends inside a surface, it has one more end than without, so a model may have more dashes with it. The next column has \
-         those of continued lines whose end is within 2 pixels of the end of a true line (the borders of \
-         pixels of the same view at four times the resolution, where the steps and folds of the truth are): \
-         folds that fade out, rims that end on a surface. The last one is what is found if true ends \
-         are moved by 11 and 9 pixels: by chance.\n\n\
+        "### Whole and steady lines\n\n\
+         Dashes for each 100 pixels of true line, on the models above and two shapes while they turn: half of the ends of \
+         lines. `cut` lines do not continue along weak edges (`hysteresis` 0, `min_length` 1); a line that continues along \
+         one that ends inside a surface has one end more. At true ends: within 2 pixels of the end of a true line, at four \
+         times the resolution. By chance: the same after true ends are moved by 11 and 9 pixels.\n\n\
          | | cut | continued | of these at true ends | by chance |\n|---|---|---|---|---|\n",
     );
     for model in table.values("model") {
@@ -56,8 +53,8 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_memory")?;
     out.push_str(
-        "\nA still view under the engine's temporal anti-aliasing, of a scene that is white except for its lines: pixels that change by more than two codes \
-         from frame to frame, and the time of a whole frame.\n\n\
+        "\nA still, white scene with lines under the engine's temporal anti-aliasing: pixels that change by more than two \
+         codes from frame to frame, and the time of a frame.\n\n\
          | | | changed pixels | ms |\n|---|---|---|---|\n",
     );
     for row in &table.rows {
@@ -102,14 +99,11 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_straight")?;
     out.push_str(
-        "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, \
-         over 200 columns. Width: the ink of a column times the cosine of the edge. Difference: \
-         of the mean width of a line from the width that was asked for, the largest of all lines. \
-         Area: the same difference, of the mean width of all lines of a slope, in percent of the width \
-         that was asked for. Unevenness: the standard deviation of the width from column to \
-         column.\n\n\
-         | px wide | difference, px | area, % | unevenness, px: mean | largest |\n\
-         |---|---|---|---|---|\n",
+        "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, over 200 columns. Width: \
+         the ink of a column times the cosine of the edge. Difference: the largest of the mean width of a line from the \
+         width that was asked for. Area: the same of all lines of a slope, in percent. Unevenness: the standard deviation \
+         of the width from column to column.\n\n\
+         | px wide | difference, px | area, % | unevenness, px: mean | largest |\n|---|---|---|---|---|\n",
     );
     for width in straight_widths(&table) {
         let rows = table.matching(&[("width", &width)]);
@@ -124,10 +118,9 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean \
-         square over all columns and offsets. Accepted: a tenth more than what is aimed at for \
-         the slope, or than what one run of steps can tell (`crates/testkit/src/straight_edges.rs`). \
-         The largest of the slopes of each row, and the largest part of what is accepted.\n\n\
+        "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean square over all columns and \
+         offsets, the largest of the slopes of a row. Part: of what is accepted, a tenth more than what is aimed at, or \
+         than one run of steps can tell (`crates/testkit/src/straight_edges.rs`).\n\n\
          | slopes | px | part |\n|---|---|---|\n",
     );
     let rows = table.matching(&[("width", "2")]);

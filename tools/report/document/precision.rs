@@ -13,8 +13,9 @@ pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "range_times")?;
     let _ = writeln!(
         out,
-        "### The range\n\nTime of the crate's reductions at {}, in the app (the passes of the range alone; \
-         every exact method gives the same bits):\n",
+        "### The range\n\n\
+         Time of the crate's reductions at {}, in the app (the passes of the range alone; every exact method gives the \
+         same bits):\n",
         size(&times)
     );
     let all = costs(&times, "ranges", "teapot", &["range"]);
@@ -36,18 +37,15 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     let costs_of = costs(&times, "lines", "teapot", &OWN);
     let _ = writeln!(
         out,
-        "### Lines\n\nThe true lines come from the scene at four times the resolution. Scores are \
-         over the pixels of all scenes; times are at {}. Contours measure a jump as a fraction \
-         of the visible range, outlines as a fraction of the distance: in deep scenes, contours \
-         find fewer lines. Contours read 3x3 texels, outlines six in a row. \"F1, silhouettes\" counts \
-         every line that is no silhouette as false.\n\n\
-         A pixel is wrong if it has ink more than two pixels away from any depth step above 1 % \
-         or fold above 20 degrees, at which the ink of outlines begins, and from any border of \
-         two objects. `{SAME_RULE}` is the rule \
-         of the true lines, applied to the picture's own depth, normals and ids: what it misses \
-         is too small for these pixels.\n\n\
-         | | silhouettes found | F1, silhouettes | every line found | precision | wrong, of drawn | F1, every line | ms | blits |\n\
-         |---|---|---|---|---|---|---|---|---|",
+        "### Lines\n\n\
+         The true lines come from the scene at four times the resolution. Scores are over the pixels of all scenes; times \
+         are at {}. Contours measure a jump as a fraction of the visible range, outlines of the distance: in deep scenes, \
+         contours find fewer lines. \"F1, silhouettes\" counts every line that is no silhouette as false.\n\n\
+         A pixel is wrong if it has ink more than two pixels from any depth step above 1 % or fold above 20 degrees, at \
+         which ink begins, and from any border of objects. `{SAME_RULE}` applies the rule of the true lines to the picture \
+         itself: what it misses is too small for its pixels.\n\n\
+         | | silhouettes found | F1, silhouettes | every line found | precision | wrong, of drawn | F1, every line | ms | \
+         blits |\n|---|---|---|---|---|---|---|---|---|",
         size(&times)
     );
     for detector in scores.values("detector") {
@@ -81,10 +79,9 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
 fn by_scene(out: &mut String, folder: &Path, scores: &Table) -> Result<(), String> {
     let whole = load(folder, "line_fragments")?;
     out.push_str(
-        "\nAll outlines by scene. False pixels lie more than two pixels from a true line, wrong \
-         ones also from any faint one; both are fractions of the picture. Fragments are parts of \
-         at most six pixels, for each 100 pixels of lines that are 1 pixel wide, in a picture of \
-         twice the width and height.\n\n\
+        "\nAll outlines by scene. False pixels lie more than two pixels from a true line, wrong ones also from any faint \
+         one; both are fractions of the picture. Fragments: parts of at most six pixels, for each 100 pixels of lines of 1 \
+         pixel, at twice the resolution.\n\n\
          | | lines found | same rule at 1x | precision | F1 | false pixels | wrong pixels | fragments |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
@@ -128,14 +125,10 @@ fn models(out: &mut String, folder: &Path) -> Result<(), String> {
     let [frames, count] = ["frame", "model"].map(|column| scores.values(column).len());
     let _ = writeln!(
         out,
-        "### Lines of models\n\nAll outlines of {count} generated models, each turned through \
-         {frames} frames, near and far. False pixels are those with a line that lie \
-         more than two pixels from a true one, wrong pixels those that also lie that far from \
-         any faint line; both are fractions of the picture. Fragments are parts \
-         of at most six pixels, for each 100 pixels of lines that are 1 pixel wide, in a picture \
-         four times as wide and high.\n\n\
-         | | lines found | precision | F1 | false pixels | wrong pixels | fragments |\n\
-         |---|---|---|---|---|---|---|"
+        "### Lines of models\n\n\
+         All outlines of {count} generated models, each turned through {frames} frames, near and far. Columns are those \
+         above; fragments are counted at four times the resolution.\n\n\
+         | | lines found | precision | F1 | false pixels | wrong pixels | fragments |\n|---|---|---|---|---|---|---|"
     );
     for model in scores.values("model") {
         for distance in scores.values("distance") {

@@ -34,10 +34,10 @@ pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
     };
     let _ = writeln!(
         out,
-        "### Toon material\n\nThe main pass of a scene at {}, with all of its meshes in one \
-         material after the other. The least time of all rounds, and its ratio to that of the \
-         standard material. The theatre has a sun, a point light and a spot light, the teapot a \
-         sun; all have shadow maps:\n",
+        "### Toon material\n\n\
+         The main pass of a scene at {}, with all of its meshes in one material after the other: the least time of all \
+         rounds, and its ratio to that of the standard material. The theatre has a sun, a point light and a spot light, \
+         the teapot a sun, all with shadow maps:\n",
         size(&times)
     );
     let scenes = times.values("scene");
