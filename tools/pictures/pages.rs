@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{save, sheet::grid};
+use crate::{save, sheet::in_rows};
 
 /// The first program of the README.
 mod first {
@@ -46,8 +46,8 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&glass(), &folder.join("glass.png"))
 }
 
-fn pair(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
-    grid(&[vec![left, right]], SIZE, GAP)
+fn pair(left: RgbaImage, right: RgbaImage) -> RgbaImage {
+    in_rows(&[left, right], 2, SIZE, GAP)
 }
 
 fn simple() -> Result<RgbaImage, String> {
@@ -244,7 +244,7 @@ fn transparency() -> RgbaImage {
     let style = ComicStyle::new()
         .with(Desaturation::default())
         .with(Contours::default());
-    pair(&studio.shoot(None), &studio.shoot(Some(&style)))
+    pair(studio.shoot(None), studio.shoot(Some(&style)))
 }
 
 /// Glass through the middle of the scene: on the styled camera, and on a camera after it.
@@ -276,5 +276,5 @@ fn glass() -> RgbaImage {
         AFTER,
     ));
     studio.headless.step(SETTLE);
-    pair(&under, &studio.headless.picture())
+    pair(under, studio.headless.picture())
 }
