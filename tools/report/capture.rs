@@ -1,8 +1,7 @@
 //! Depth and picture of a view, for what is computed on the CPU.
 
-use bevy::{math::UVec2, render::RenderApp};
+use bevy::render::RenderApp;
 use bevy_comics::{Colorization, ComicStyle, Desaturation, effects::Equations};
-use nv_flip::{FlipImageRgb8, FlipPool};
 
 use bevy_comics_testkit::{
     read_back,
@@ -80,11 +79,4 @@ pub fn styled(style: &ComicStyle, light: [f64; 3], [d, l]: [f64; 2]) -> [u8; 3] 
         linear = colorization::colorize(s, linear, d, l, saturation);
     }
     srgb_encode(linear).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
-}
-
-/// Mean FLIP difference of two pictures of display codes, 0 to 1.
-pub fn flip(size: UVec2, a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
-    let image = |p: &[[u8; 3]]| FlipImageRgb8::with_data(size.x, size.y, p.as_flattened());
-    let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
-    f64::from(FlipPool::from_image(&map).mean())
 }

@@ -1,16 +1,15 @@
-//! How the cost grows with pixels, vertices and cameras, and the experiment of [CS].
+//! How the cost grows with pixels, vertices and cameras.
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 
 use bevy_comics::{Colorization, ComicStyle, DepthMap};
-use bevy_comics_testkit::{bench, headless::new_target, scenes::BuiltIn, work::default_comic};
+use bevy_comics_testkit::{headless::new_target, scenes::BuiltIn, work::default_comic};
 
 use crate::{
     Run,
     costs::GROWING,
     ladder::ball,
-    rig::{self, Drawn, Rig},
-    table::Table,
+    rig::{self, Rig},
 };
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -90,27 +89,5 @@ pub fn measure(run: &Run) -> Result<(), String> {
         let what = cameras.to_string();
         rig::record(run, &mut times, "cameras", &what, &mut rig, &comic);
     }
-    run.save("growth_times", &times)?;
-    paper(run)
-}
-
-/// Whole frames of one million vertices at 512x512, with and without the default comic.
-fn paper(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&["app", "round", "milliseconds"]);
-    let mut rig = Rig::new(None, run.size([128; 2], [512; 2]));
-    ball(&mut rig, run.pick(10_000, 1_000_000));
-    for round in 0..=run.pick(3, 20) {
-        for (name, drawn) in [
-            ("without the model", Drawn::Nothing),
-            ("with the model", Drawn::style(default_comic())),
-        ] {
-            rig.set_drawn(&drawn);
-            rig.headless.step(3);
-            let ms = bench::whole_frame(&mut rig.headless);
-            if round > 0 {
-                table.push(&[&name, &round, &format!("{ms:.4}")]);
-            }
-        }
-    }
-    run.save("paper_times", &table)
+    run.save("growth_times", &times)
 }

@@ -69,46 +69,32 @@ enum Variant {
 }
 
 impl Variant {
-    const ALL: [Self; 17] = [
-        Self::WithoutPlugin,
-        Self::Idle,
-        Self::Prepasses,
-        Self::Floor,
-        Self::WithoutIds,
-        Self::Outlines,
-        Self::NoOutlines,
-        Self::Moving,
-        Self::Turning,
-        Self::Meshes,
-        Self::Cameras,
-        Self::ManyCameras,
-        Self::IdleCameras,
-        Self::UnseenWithoutPlugin,
-        Self::UnseenIdle,
-        Self::EmptyScene,
-        Self::Scenes,
+    const ALL: [(Self, &str); 17] = [
+        (Self::WithoutPlugin, "without the plugin"),
+        (Self::Idle, "idle plugin"),
+        (Self::Prepasses, "depth and normal prepass"),
+        (Self::Floor, "depth and normal prepass; drawn twice"),
+        (Self::WithoutIds, "outlines without object edges"),
+        (Self::Outlines, "outlines"),
+        (Self::NoOutlines, "outlines; one object without"),
+        (Self::Moving, "outlines; 1 % move"),
+        (Self::Turning, "outlines; the camera turns"),
+        (Self::Meshes, "outlines; 1000 meshes"),
+        (Self::Cameras, "outlines; 8 cameras"),
+        (Self::ManyCameras, "outlines; 50 cameras"),
+        (Self::IdleCameras, "idle plugin; 50 cameras"),
+        (
+            Self::UnseenWithoutPlugin,
+            "without the plugin; none in view",
+        ),
+        (Self::UnseenIdle, "idle plugin; none in view"),
+        (Self::EmptyScene, "idle; an empty toon scene"),
+        (Self::Scenes, "idle; 1000 toon scenes"),
     ];
 
     fn name(self) -> &'static str {
-        match self {
-            Self::WithoutPlugin => "without the plugin",
-            Self::Idle => "idle plugin",
-            Self::Prepasses => "depth and normal prepass",
-            Self::Floor => "depth and normal prepass; drawn twice",
-            Self::WithoutIds => "outlines without object edges",
-            Self::Outlines => "outlines",
-            Self::NoOutlines => "outlines; one object without",
-            Self::Moving => "outlines; 1 % move",
-            Self::Turning => "outlines; the camera turns",
-            Self::Meshes => "outlines; 1000 meshes",
-            Self::Cameras => "outlines; 8 cameras",
-            Self::ManyCameras => "outlines; 50 cameras",
-            Self::IdleCameras => "idle plugin; 50 cameras",
-            Self::UnseenWithoutPlugin => "without the plugin; none in view",
-            Self::UnseenIdle => "idle plugin; none in view",
-            Self::EmptyScene => "idle; an empty toon scene",
-            Self::Scenes => "idle; 1000 toon scenes",
-        }
+        let named = Self::ALL.iter().find(|(variant, _)| *variant == self);
+        named.map_or("", |(_, name)| *name)
     }
 
     fn has_lines(self) -> bool {
@@ -404,7 +390,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let frames = run.pick(1, 9);
     // The apps without the plugin are timed once more in the end: that shows the noise.
     let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));
-    let variants = Variant::ALL.map(|variant| (variant, false));
+    let variants = Variant::ALL.map(|(variant, _)| (variant, false));
     let variants = run.some(6, variants.into_iter().chain(again));
     // Those that are compared take turns, so that a slower minute of the machine slows all of them.
     let groups: Vec<_> = variants

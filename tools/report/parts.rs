@@ -16,80 +16,48 @@ use bevy_comics::{
 use bevy_comics_testkit::scenes::BuiltIn;
 
 use crate::{
-    Run, page_styles,
+    Run,
+    page_styles::{self, changed},
     rig::{self, Drawn, Rig},
 };
 
 /// Outlines of which one thing differs from the default.
 fn lines() -> Vec<(&'static str, ComicStyle)> {
-    let default = Outlines::default();
-    [
-        ("outlines", default),
-        (
-            "gaps up to 3 pixels closed",
-            Outlines {
-                gap_closing: 3,
-                ..default
-            },
-        ),
-        (
-            "overshooting by 8 pixels",
-            Outlines {
-                overshoot: 8.0,
-                ..default
-            },
-        ),
-        (
-            "persistent for 4 frames",
-            Outlines {
-                hold_frames: 4,
-                ..default
-            },
-        ),
-        (
-            "under pressure",
-            Outlines {
-                weight: LineWeight {
-                    pressure: 0.5,
-                    ..LineWeight::EVEN
-                },
-                ..default
-            },
-        ),
-        (
-            "without an ink budget",
-            Outlines {
-                ink_budget: 1.0,
-                ..default
-            },
-        ),
-        (
-            "with soft ink",
-            Outlines {
-                silhouettes: Some(Silhouettes {
-                    softness: 1.0,
-                    ..Default::default()
-                }),
-                creases: Some(Creases {
-                    softness: 1.0,
-                    ..Default::default()
-                }),
-                response: LineResponse::Both,
-                ..default
-            },
-        ),
+    let of = changed::<Outlines>;
+    vec![
+        ("outlines", of(|_| ())),
+        ("gaps up to 3 pixels closed", of(|o| o.gap_closing = 3)),
+        ("overshooting by 8 pixels", of(|o| o.overshoot = 8.0)),
+        ("persistent for 4 frames", of(|o| o.hold_frames = 4)),
+        ("under pressure", of(|o| o.weight = pressed())),
+        ("without an ink budget", of(|o| o.ink_budget = 1.0)),
+        ("with soft ink", of(soft)),
         (
             "in the colour of surfaces",
-            Outlines {
-                color: LineColor::SURFACE,
-                ..default
-            },
+            of(|o| o.color = LineColor::SURFACE),
         ),
+        ("and depth layers", layer_lines()),
     ]
-    .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
-    .into_iter()
-    .chain([("and depth layers", layer_lines())])
-    .collect()
+}
+
+fn pressed() -> LineWeight {
+    LineWeight {
+        pressure: 0.5,
+        ..LineWeight::EVEN
+    }
+}
+
+fn soft(outlines: &mut Outlines) {
+    let softness = 1.0;
+    outlines.silhouettes = Some(Silhouettes {
+        softness,
+        ..default()
+    });
+    outlines.creases = Some(Creases {
+        softness,
+        ..default()
+    });
+    outlines.response = LineResponse::Both;
 }
 
 /// Outlines with another width and colour in near, middle and far.

@@ -57,19 +57,6 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
             table.cell(row, "wild")
         );
     }
-    let moved = load(folder, "moved")?;
-    out.push_str(
-        "\nThe FLIP difference between a scene and the same scene scaled with its near plane, or moved with its camera. \
-         Positions are single floats, which have steps of 0.06 at 1e6:\n\n| | FLIP |\n|---|---|\n",
-    );
-    for row in &moved.rows {
-        let _ = writeln!(
-            out,
-            "| {} | {:.4} |",
-            moved.cell(row, "case"),
-            moved.number(row, "flip")
-        );
-    }
     out.push('\n');
     Ok(())
 }
@@ -236,22 +223,6 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
             .collect();
         let _ = writeln!(out, "| {scene} | {cost:.2} | {:.2} |", median(&whole));
     }
-    let paper = load(folder, "paper_times")?;
-    let fps = |app: &str| {
-        let rows = paper.matching(&[("app", app)]);
-        1000.0 / median(&paper.numbers(&rows, "milliseconds"))
-    };
-    let (without, with) = (fps("without the model"), fps("with the model"));
-    let _ = writeln!(
-        out,
-        "\n### The paper's experiment\n\n\
-         Whole frames of one million vertices at 512x512, without and with the paper's model (here the default comic), \
-         prepass included.\n\n\
-         | | without, frames/s | with, frames/s | with / without |\n|---|---|---|---|\n| [CS], GPU unnamed, 2010 | 512 | \
-         260 | {:.2} |\n| here | {without:.2} | {with:.2} | {:.2} |\n",
-        260.0 / 512.0,
-        with / without
-    );
-    out.push_str("![Cost against pixels](growth.svg)\n\n");
+    out.push_str("\n![Cost against pixels](growth.svg)\n\n");
     Ok(())
 }
