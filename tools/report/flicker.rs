@@ -244,7 +244,7 @@ fn octaves(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> f64 {
 
 pub fn measure(run: &Run) -> Result<(), String> {
     let size = run.size([64, 36], [192, 108]);
-    let mut table = Table::new(&["sequence", "variant", "frame", "mean", "p99", "lag"]);
+    let mut table = Table::new("sequence,variant,frame,mean,p99,lag");
     for name in run.some(1, SEQUENCES) {
         let sequence = play(name, size);
         let exact = ranges(&sequence, None);

@@ -36,7 +36,7 @@ const ELSEWHERE: [i64; 2] = [44, -36];
 /// of them are where true lines end.
 pub fn dashes(run: &Run) -> Result<(), String> {
     let (frames, size) = (run.pick(2, 90), run.size([120, 68], [240, 136]));
-    let mut table = Table::new(&["model", "method", "ends", "true", "true_ends", "by_chance"]);
+    let mut table = Table::new("model,method,ends,true,true_ends,by_chance");
     let mut fine = Studio::new(size * FINE, ids_alone());
     let whole = Outlines {
         ink_budget: 1.0,
@@ -160,7 +160,7 @@ fn whiten(rig: &mut Rig) {
 pub fn memory(run: &Run) -> Result<(), String> {
     let (settled, frames, timed) = run.pick((4, 2, 1), (150, 64, 21));
     let size = run.size([160, 90], [640, 360]);
-    let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
+    let mut table = Table::new("scene,method,changed,pixels,ms");
     let lines = |history_weight: f32| {
         Drawn::style(ComicStyle::new().with(Outlines {
             history_weight,

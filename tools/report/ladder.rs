@@ -16,25 +16,8 @@ use crate::{
     table::Table,
 };
 
-/// The header of the table of counted work.
-pub const WORK: [&str; 13] = [
-    "style",
-    "passes",
-    "ran",
-    "left_out",
-    "bindings",
-    "fetches",
-    "most",
-    "bytes",
-    "walk",
-    "find",
-    "columns",
-    "draw",
-    "line_bytes",
-];
-
 /// The row of a counted style.
-pub fn work_row(work: &work::Work) -> Vec<String> {
+fn work_row(work: &work::Work) -> Vec<String> {
     vec![
         work.name.replace(',', ";"),
         work.ran.len().to_string(),
@@ -77,7 +60,7 @@ fn idle(run: &Run) -> Result<(), String> {
         headless.step(10);
         apps.push((name, headless));
     }
-    let mut table = Table::new(&["app", "round", "milliseconds"]);
+    let mut table = Table::new("app,round,milliseconds");
     for round in 0..run.pick(10, 300) {
         for (name, headless) in &mut apps {
             let ms = bench::whole_frame(headless);
@@ -116,7 +99,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     idle(run)?;
 
     // The same on every adapter, so it is last where the time is short.
-    let mut counted = Table::new(&WORK);
+    let mut counted = Table::new(
+        "style,passes,ran,left_out,bindings,fetches,most,bytes,walk,find,columns,draw,line_bytes",
+    );
     let mut counter = WorkCounter::default();
     for (name, style) in &styles {
         counted.rows.push(work_row(&counter.count(name, style)));

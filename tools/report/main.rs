@@ -214,7 +214,7 @@ fn machine(run: &Run) -> Result<(), String> {
     );
     let clean = |text: String| text.replace([',', '\n'], ";");
     let info = &adapter.info;
-    let mut table = Table::new(&["what", "value"]);
+    let mut table = Table::new("what,value");
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     for (what, value) in [
         ("date", run.stamp.date.clone()),

@@ -377,14 +377,10 @@ impl Crowd {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let header = [
-        &["objects", "variant", "round", "toon_materials"][..],
-        &["id_draws", "uploaded_bytes", "whole"],
-        &STAGES,
-        &[OF_IDS],
-    ]
-    .concat();
-    let mut table = Table::new(&header);
+    let mut table = Table::new(&format!(
+        "objects,variant,round,toon_materials,id_draws,uploaded_bytes,whole,{},{OF_IDS}",
+        STAGES.join(",")
+    ));
     let all = [1, 1_000, 10_000, 20_000, 60_000, 100_000];
     let counts = run.pick(vec![1, 100], all.into());
     let frames = run.pick(1, 9);

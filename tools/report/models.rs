@@ -79,20 +79,8 @@ impl Studio {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&[
-        "model",
-        "distance",
-        "frame",
-        "found",
-        "true",
-        "right",
-        "drawn",
-        "false",
-        "wrong",
-        "pixels",
-        "fragments",
-        "line",
-    ]);
+    let mut table =
+        Table::new("model,distance,frame,found,true,right,drawn,false,wrong,pixels,fragments,line");
     let (frames, size) = (run.pick(1, 90), run.size([120, 68], [240, 136]));
     let mut fine = Studio::new(size * FINE, ids_alone());
     // Without the ink budget, which makes crowded lines too thin for the mask.

@@ -108,11 +108,20 @@ struct Part {
 impl Part {
     /// One style on the changed teapot.
     fn new(name: &'static str, change: fn(&mut Rig), style: ComicStyle) -> Self {
+        Self::on(BuiltIn::Teapot, name, change, vec![(name, style)])
+    }
+
+    fn on(
+        scene: BuiltIn,
+        name: &'static str,
+        change: fn(&mut Rig),
+        styles: Vec<(&'static str, ComicStyle)>,
+    ) -> Self {
         Self {
             name,
-            scene: BuiltIn::Teapot,
+            scene,
             change,
-            styles: vec![(name, style)],
+            styles,
             base: None,
         }
     }
@@ -152,23 +161,12 @@ fn changes() -> Vec<Part> {
     ];
     // The village has lines in most of its tiles, the teapot in few.
     for scene in [BuiltIn::Teapot, BuiltIn::Village] {
-        let forgetful = Outlines {
-            history_weight: 0.0,
-            ..default()
-        };
-        parts.push(Part {
-            name: "temporal anti-aliasing",
-            scene,
-            change: jitter,
-            styles: vec![
-                (
-                    "outlines; temporal anti-aliasing; no memory",
-                    ComicStyle::new().with(forgetful),
-                ),
-                ("outlines; temporal anti-aliasing; memory", outlines()),
-            ],
-            base: None,
-        });
+        let forgetful = changed::<Outlines>(|o| o.history_weight = 0.0);
+        let styles = vec![
+            ("outlines; temporal anti-aliasing; no memory", forgetful),
+            ("outlines; temporal anti-aliasing; memory", outlines()),
+        ];
+        parts.push(Part::on(scene, "temporal anti-aliasing", jitter, styles));
         let creases = |source| {
             let creases = Some(Creases {
                 source,
@@ -179,20 +177,14 @@ fn changes() -> Vec<Part> {
                 ..default()
             })
         };
-        parts.push(Part {
-            name: "what creases are found by",
-            scene,
-            change: |_| (),
-            styles: vec![
-                (
-                    "outlines; creases of normals",
-                    creases(CreaseSource::Normals),
-                ),
-                ("outlines; creases of meshes", creases(CreaseSource::Meshes)),
-                ("outlines; creases of both", creases(CreaseSource::Both)),
-            ],
-            base: None,
-        });
+        let styles = [
+            ("outlines; creases of normals", CreaseSource::Normals),
+            ("outlines; creases of meshes", CreaseSource::Meshes),
+            ("outlines; creases of both", CreaseSource::Both),
+        ];
+        let styles = styles.map(|(name, source)| (name, creases(source)));
+        let name = "what creases are found by";
+        parts.push(Part::on(scene, name, |_| (), styles.into()));
     }
     parts.extend([BuiltIn::Village, BuiltIn::Mountains].map(ink_budget));
     parts
@@ -200,22 +192,17 @@ fn changes() -> Vec<Part> {
 
 /// Two passes measure how densely lines lie. They crowd on the meadow of the mountains.
 fn ink_budget(scene: BuiltIn) -> Part {
-    let outlines = |ink_budget| {
-        ComicStyle::new().with(Outlines {
-            ink_budget,
-            ..default()
-        })
-    };
-    Part {
-        name: "ink budget",
-        scene,
-        change: |_| (),
-        styles: vec![
-            ("outlines; no ink budget", outlines(1.0)),
-            ("outlines; ink budget", outlines(0.35)),
-        ],
-        base: None,
-    }
+    let styles = vec![
+        (
+            "outlines; no ink budget",
+            changed::<Outlines>(|o| o.ink_budget = 1.0),
+        ),
+        (
+            "outlines; ink budget",
+            changed::<Outlines>(|o| o.ink_budget = 0.35),
+        ),
+    ];
+    Part::on(scene, "ink budget", |_| (), styles)
 }
 
 /// Times each change on a scene of its own, in turn with the scene that it is compared with.

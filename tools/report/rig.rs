@@ -192,10 +192,7 @@ pub fn middle_of(times: impl Iterator<Item = f64>) -> f64 {
 
 /// Header of every table of times.
 pub fn times() -> Table {
-    Table::new(&[
-        "section", "scene", "variant", "width", "height", "round", "prepass", "range", "lines",
-        "main", "post",
-    ])
+    Table::new("section,scene,variant,width,height,round,prepass,range,lines,main,post")
 }
 
 /// Times the variants together with nothing, a blit, and a second blit that shows the

@@ -326,17 +326,8 @@ fn rendered(table: &mut Table, run: &Run) {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&[
-        "kind",
-        "case",
-        "condition",
-        "textbook_ulp",
-        "textbook_codes",
-        "textbook_wild",
-        "ulp",
-        "codes",
-        "wild",
-    ]);
+    let mut table =
+        Table::new("kind,case,condition,textbook_ulp,textbook_codes,textbook_wild,ulp,codes,wild");
     map_cases(&mut table, run);
     rendered(&mut table, run);
     run.save("stability", &table)

@@ -9,9 +9,10 @@ pub struct Table {
 }
 
 impl Table {
-    pub fn new(header: &[&str]) -> Self {
+    /// `header`: the names of the columns, as in the file.
+    pub fn new(header: &str) -> Self {
         Self {
-            header: header.iter().map(|h| (*h).to_owned()).collect(),
+            header: header.split(',').map(str::to_owned).collect(),
             rows: Vec::new(),
         }
     }

@@ -147,7 +147,7 @@ fn set_light(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
 
 pub fn measure(run: &Run) -> Result<(), String> {
     let size = run.size([100, 70], [400, 280]);
-    let mut times = Table::new(&["scene", "variant", "width", "height", "round", "main"]);
+    let mut times = Table::new("scene,variant,width,height,round,main");
     for scene in run.some(1, [BuiltIn::Theatre, BuiltIn::Teapot]) {
         let mut rig = Rig::new(Some(scene), size);
         let (camera, meshes) = (rig.camera, rig.meshes());
