@@ -43,7 +43,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         (2048, 2048),
         (3840, 2160),
     ];
-    let sizes = run.pick(vec![(96, 96), (192, 192)], sizes.into());
+    let sizes = run.pick(vec![(96, 96), (192, 192)], sizes.to_vec());
     for (width, height) in sizes {
         let mut rig = Rig::new(Some(BuiltIn::Teapot), UVec2::new(width, height));
         rig.unlight();

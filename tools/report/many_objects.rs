@@ -382,7 +382,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         STAGES.join(",")
     ));
     let all = [1, 1_000, 10_000, 20_000, 60_000, 100_000];
-    let counts = run.pick(vec![1, 100], all.into());
+    let counts = run.pick(vec![1, 100], all.to_vec());
     let frames = run.pick(1, 9);
     // The apps without the plugin are timed once more in the end: that shows the noise.
     let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));

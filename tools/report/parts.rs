@@ -184,7 +184,7 @@ fn changes() -> Vec<Part> {
         ];
         let styles = styles.map(|(name, source)| (name, creases(source)));
         let name = "what creases are found by";
-        parts.push(Part::on(scene, name, |_| (), styles.into()));
+        parts.push(Part::on(scene, name, |_| (), styles.to_vec()));
     }
     parts.extend([BuiltIn::Village, BuiltIn::Mountains].map(ink_budget));
     parts
