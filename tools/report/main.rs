@@ -215,6 +215,8 @@ fn machine(run: &Run) -> Result<(), String> {
     let clean = |text: String| text.replace([',', '\n'], ";");
     let info = &adapter.info;
     let mut table = Table::new("what,value");
+    let is_dev = cfg!(debug_assertions);
+    let build = if is_dev { "dev" } else { "release" };
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     for (what, value) in [
         ("date", run.stamp.date.clone()),
@@ -226,15 +228,7 @@ fn machine(run: &Run) -> Result<(), String> {
         ("cores", cores.to_string()),
         ("operating system", std::env::consts::OS.to_owned()),
         ("architecture", std::env::consts::ARCH.to_owned()),
-        (
-            "build",
-            if cfg!(debug_assertions) {
-                "dev"
-            } else {
-                "release"
-            }
-            .to_owned(),
-        ),
+        ("build", build.to_owned()),
         ("times", bench::method(&headless).to_owned()),
         (
             "repetitions",
