@@ -12,7 +12,7 @@ use image::RgbaImage;
 
 use crate::{
     save,
-    sheet::grid,
+    sheet::in_rows,
     toon::{Room, matt, per_light},
 };
 
@@ -27,7 +27,7 @@ pub fn write(folder: &Path) -> Result<(), String> {
 }
 
 fn row(pictures: &[RgbaImage]) -> RgbaImage {
-    grid(&[pictures.iter().collect()], SIZE, GAP)
+    in_rows(pictures, pictures.len(), SIZE, GAP)
 }
 
 fn comic() -> ComicStyle {

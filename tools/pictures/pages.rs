@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{save, sheet::grid};
+use crate::{save, sheet::in_rows, toon::matt};
 
 /// The first program of the README.
 mod first {
@@ -46,8 +46,8 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&glass(), &folder.join("glass.png"))
 }
 
-fn pair(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
-    grid(&[vec![left, right]], SIZE, GAP)
+fn pair(left: RgbaImage, right: RgbaImage) -> RgbaImage {
+    in_rows(&[left, right], 2, SIZE, GAP)
 }
 
 fn simple() -> Result<RgbaImage, String> {
@@ -81,17 +81,10 @@ fn put(world: &mut World, mesh: Mesh, color: Color, at: Vec3) -> Entity {
 
 /// Adds a mesh with flat light of its own settings.
 pub fn put_lit(world: &mut World, mesh: Mesh, color: Color, at: Vec3, scene: ToonScene) -> Entity {
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-    let material = StandardMaterial {
-        perceptual_roughness: 0.9,
-        ..color.into()
-    };
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(material);
+    let mesh = Mesh3d(world.add_asset(mesh));
+    let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(matt(color)));
     let place = Transform::from_translation(at);
-    let material = MeshMaterial3d(material);
-    world.spawn((Mesh3d(mesh), material, place, scene)).id()
+    world.spawn((mesh, material, place, scene)).id()
 }
 
 fn toys() -> Toys {
@@ -216,25 +209,16 @@ fn pane(studio: &mut Studio, [distance, right, height]: [f32; 3]) -> Entity {
     let eye = studio.vantage.transform();
     let at = eye.translation + eye.forward() * distance + eye.right() * right;
     let world = studio.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(1.2 * height, height));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgba(0.85, 0.1, 0.1, 0.55),
-            alpha_mode: AlphaMode::Blend,
-            unlit: true,
-            ..default()
-        });
-    world
-        .spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
-            eye.with_translation(at),
-            NotShadowCaster,
-        ))
-        .id()
+    let mesh = Mesh3d(world.add_asset(Rectangle::new(1.2 * height, height)));
+    let red = StandardMaterial {
+        base_color: Color::srgba(0.85, 0.1, 0.1, 0.55),
+        alpha_mode: AlphaMode::Blend,
+        unlit: true,
+        ..default()
+    };
+    let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(red));
+    let place = eye.with_translation(at);
+    world.spawn((mesh, material, place, NotShadowCaster)).id()
 }
 
 /// Glass before half of the view takes the depth, and so the gray, of what is behind it.
@@ -244,7 +228,7 @@ fn transparency() -> RgbaImage {
     let style = ComicStyle::new()
         .with(Desaturation::default())
         .with(Contours::default());
-    pair(&studio.shoot(None), &studio.shoot(Some(&style)))
+    pair(studio.shoot(None), studio.shoot(Some(&style)))
 }
 
 /// Glass through the middle of the scene: on the styled camera, and on a camera after it.
@@ -276,5 +260,5 @@ fn glass() -> RgbaImage {
         AFTER,
     ));
     studio.headless.step(SETTLE);
-    pair(&under, &studio.headless.picture())
+    pair(under, studio.headless.picture())
 }

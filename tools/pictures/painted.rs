@@ -12,7 +12,7 @@ use bevy_comics::{
 use image::{Rgba, RgbaImage, imageops};
 
 use crate::{
-    sheet::grid,
+    sheet::in_rows,
     toon::{Room, bumpy, matt, per_light},
 };
 
@@ -199,5 +199,5 @@ pub fn picture() -> RgbaImage {
         },
     ];
     let pictures = panels.map(panel);
-    grid(&[pictures.iter().collect()], SIZE, 4)
+    in_rows(&pictures, 4, SIZE, 4)
 }

@@ -11,7 +11,7 @@ use bevy_comics_testkit::{
 };
 use image::{RgbaImage, imageops};
 
-use crate::{save, sheet::grid};
+use crate::{save, sheet::in_rows};
 
 const SIZE: UVec2 = UVec2::new(960, 540);
 const GAP: u32 = 6;
@@ -49,13 +49,7 @@ fn parts(shown: &[(Preset, BuiltIn, [u32; 2])], size: UVec2, columns: usize) -> 
         imageops::crop_imm(&picture, *x, *y, size.x, size.y).to_image()
     };
     let pictures: Vec<RgbaImage> = shown.iter().map(part).collect();
-    rows(&pictures, size, columns)
-}
-
-fn rows(pictures: &[RgbaImage], size: UVec2, columns: usize) -> RgbaImage {
-    let chunks = pictures.chunks(columns);
-    let rows: Vec<Vec<&RgbaImage>> = chunks.map(|row| row.iter().collect()).collect();
-    grid(&rows, size, GAP)
+    in_rows(&pictures, columns, size, GAP)
 }
 
 /// Without a focus, then in its five styles.
@@ -72,5 +66,5 @@ fn focus() -> RgbaImage {
     let without = ComicStyle::new().with(Outlines::default());
     let styles = std::iter::once(without).chain(all.map(village_focus));
     let pictures: Vec<RgbaImage> = styles.map(|style| studio.shoot(Some(&style))).collect();
-    rows(&pictures, size, 2)
+    in_rows(&pictures, 2, size, GAP)
 }

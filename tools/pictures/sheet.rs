@@ -42,7 +42,7 @@ fn shoot(scene: BuiltIn, size: UVec2, looks: &[Look]) -> Result<Vec<RgbaImage>, 
 }
 
 /// The middle of a picture, enlarged to its size: every pixel is a square.
-fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
+pub fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
     let (width, height) = picture.dimensions();
     let (x, y) = ((width - width / zoom) / 2, (height - height / zoom) / 2);
     let middle = imageops::crop_imm(picture, x, y, width / zoom, height / zoom).to_image();
@@ -75,11 +75,7 @@ pub fn styles(size: UVec2, out: &Path) -> Result<(), String> {
             println!("{drawn:2} of {count}, about {left:.0} s left: {preset}");
         }
     }
-    let rows: Vec<Vec<&RgbaImage>> = pictures
-        .chunks(COLUMNS)
-        .map(|row| row.iter().collect())
-        .collect();
-    save(&grid(&rows, size, GAP), out)
+    save(&in_rows(&pictures, COLUMNS, size, GAP), out)
 }
 
 /// Rows of presets, the original first; columns of scenes. `zoom` enlarges the middle of each.
@@ -160,7 +156,7 @@ pub fn style_row(out: &Path) -> Result<(), String> {
     ]
     .map(Some);
     let pictures = shoot_small(BuiltIn::Theatre, &looks)?;
-    save(&grid(&[pictures.iter().collect()], SMALL, GAP), out)
+    save(&in_rows(&pictures, 4, SMALL, GAP), out)
 }
 
 /// The page of the presets: one scene in twelve of them.
@@ -180,8 +176,14 @@ pub fn presets(out: &Path) -> Result<(), String> {
         "blueprint",
     ];
     let pictures = shoot_small(BuiltIn::Village, &names.map(Some))?;
-    let rows: Vec<Vec<&RgbaImage>> = pictures.chunks(3).map(|row| row.iter().collect()).collect();
-    save(&grid(&rows, SMALL, GAP), out)
+    save(&in_rows(&pictures, 3, SMALL, GAP), out)
+}
+
+/// Pictures in rows of so many columns, on paper.
+pub fn in_rows(pictures: &[RgbaImage], columns: usize, size: UVec2, gap: u32) -> RgbaImage {
+    let rows = pictures.chunks(columns);
+    let rows: Vec<Vec<&RgbaImage>> = rows.map(|row| row.iter().collect()).collect();
+    grid(&rows, size, gap)
 }
 
 /// Pictures side by side and one below the other, on paper.

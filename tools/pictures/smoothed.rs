@@ -10,7 +10,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
 
-use crate::sheet::grid;
+use crate::sheet::in_rows;
 
 /// Frames until normals are made and the picture stands still.
 const SETTLE: usize = 10;
@@ -47,6 +47,5 @@ pub fn picture() -> RgbaImage {
         }
         studio.headless.picture()
     });
-    let [own, smooth] = &pictures;
-    grid(&[vec![own, smooth]], size, 6)
+    in_rows(&pictures, 2, size, 6)
 }

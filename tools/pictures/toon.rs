@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{painted, save, sheet::grid, smoothed, strokes};
+use crate::{painted, save, sheet::in_rows, smoothed, strokes};
 
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
@@ -258,7 +258,7 @@ fn details() -> RgbaImage {
         }
         room.picture()
     });
-    grid(&[pictures.iter().collect()], size, 4)
+    in_rows(&pictures, 3, size, 4)
 }
 
 /// A figure of round and square parts: without a rim, with one that faces away from the eye, and
@@ -377,7 +377,7 @@ fn tone_ramp() -> RgbaImage {
     let outlines = ComicStyle::new().with(Outlines::default());
     let before = studio.shoot(Some(&outlines));
     let after = studio.shoot(Some(&outlines.with(ToneRamp::default())));
-    grid(&[vec![&before, &after]], size, 6)
+    in_rows(&[before, after], 2, size, 6)
 }
 
 /// A character whose materials have looks of their own, from files.
@@ -408,6 +408,5 @@ fn lights() -> RgbaImage {
         studio.headless.step(SETTLE);
         studio.headless.picture()
     });
-    let [environment, sun, lamps, area] = &pictures;
-    grid(&[vec![environment, sun], vec![lamps, area]], size, 4)
+    in_rows(&pictures, 2, size, 4)
 }

@@ -90,22 +90,6 @@ pub fn cost_table(out: &mut String, costs: &[Cost]) {
     out.push('\n');
 }
 
-/// (name, median milliseconds, median ratio to the blit of the round).
-pub fn bare_costs(times: &Table, column: &str) -> Vec<(String, f64, f64)> {
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let of = |name: &str| times.numbers(&times.matching(&[(column, name)]), "milliseconds");
-    let blit = of("blit");
-    times
-        .distinct(&all, column)
-        .into_iter()
-        .map(|name| {
-            let own = of(&name);
-            let ratios: Vec<f64> = own.iter().zip(&blit).map(|(a, b)| a / b).collect();
-            (name, median(&own), median(&ratios))
-        })
-        .collect()
-}
-
 /// Size of the pictures of a table, as text.
 pub fn size(times: &Table) -> String {
     times.rows.first().map_or_else(String::new, |row| {
@@ -116,7 +100,7 @@ pub fn size(times: &Table) -> String {
 /// (recall, precision, F1) of a detector over all scenes.
 pub fn line_score(scores: &Table, detector: &str, truth: &str) -> [f64; 3] {
     let rows = scores.matching(&[("detector", detector), ("truth", truth)]);
-    let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+    let sum = |name| scores.sum(&rows, name);
     let recall = sum("found") / sum("true").max(1.0);
     let precision = sum("right") / sum("drawn").max(1.0);
     let f1 = 2.0 * recall * precision / (recall + precision).max(1e-9);

@@ -21,7 +21,7 @@ use bevy_comics_testkit::{
 use crate::{
     Run,
     capture::{self, Shot, shoot},
-    rig::{Drawn, Rig},
+    rig::{Drawn, Rig, unlit},
     table::Table,
 };
 
@@ -101,65 +101,6 @@ fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[
         .collect()
 }
 
-fn intruder(rig: &mut Rig) -> Entity {
-    let world = rig.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Sphere::new(0.12).mesh().uv(24, 16));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgb(0.8, 0.2, 0.1),
-            unlit: true,
-            ..default()
-        });
-    world
-        .spawn((Mesh3d(mesh), MeshMaterial3d(material), Visibility::Hidden))
-        .id()
-}
-
-fn mountain(rig: &mut Rig) -> Entity {
-    let world = rig.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cone::new(9.0, 14.0));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgb(0.4, 0.45, 0.5),
-            unlit: true,
-            ..default()
-        });
-    world
-        .spawn((Mesh3d(mesh), MeshMaterial3d(material), Visibility::Hidden))
-        .id()
-}
-
-fn particles(rig: &mut Rig) -> Vec<Entity> {
-    let world = rig.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Sphere::new(0.02).mesh().uv(6, 4));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::WHITE,
-            unlit: true,
-            ..default()
-        });
-    (0..60)
-        .map(|_| {
-            world
-                .spawn((
-                    Mesh3d(mesh.clone()),
-                    MeshMaterial3d(material.clone()),
-                    Transform::default(),
-                ))
-                .id()
-        })
-        .collect()
-}
-
 const FRAMES: usize = 72;
 
 fn play(name: &str, size: UVec2) -> Sequence {
@@ -181,15 +122,18 @@ fn play(name: &str, size: UVec2) -> Sequence {
         .world_mut()
         .entity_mut(camera)
         .insert((DepthPrepass, Tonemapping::AcesFitted));
+    let [mountain, intruder] =
+        [[0.4, 0.45, 0.5], [0.8, 0.2, 0.1]].map(|color| unlit(Color::srgb_from_array(color)));
+    let hidden = Transform::from_translation(from.translation + from.back() * 100.0);
     let extra = match name {
-        "far mountain" => mountain(&mut rig),
-        _ => intruder(&mut rig),
+        "far mountain" => rig.put(Cone::new(9.0, 14.0), mountain, hidden),
+        _ => rig.put(Sphere::new(0.12).mesh().uv(24, 16), intruder, hidden),
     };
-    let dust = if name.starts_with("particles") {
-        particles(&mut rig)
-    } else {
-        Vec::new()
-    };
+    let specks = if name.starts_with("particles") { 60 } else { 0 };
+    let speck = || Sphere::new(0.02).mesh().uv(6, 4);
+    let dust: Vec<Entity> = (0..specks)
+        .map(|_| rig.put(speck(), unlit(Color::WHITE), Transform::default()))
+        .collect();
     rig.headless.step(3);
     let mut cuts = Vec::new();
     let mut random = bevy_comics_testkit::scenes::noise::Random::new(4);
@@ -241,11 +185,7 @@ fn play(name: &str, size: UVec2) -> Sequence {
                         .entity_mut(*speck)
                         .insert(Transform::from_translation(at));
                 }
-                let seen = if alive {
-                    Visibility::Visible
-                } else {
-                    Visibility::Hidden
-                };
+                let seen = [Visibility::Hidden, Visibility::Visible][usize::from(alive)];
                 world.entity_mut(*speck).insert(seen);
             }
             shoot(&mut rig)
@@ -303,12 +243,8 @@ fn octaves(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> f64 {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(64, 36)
-    } else {
-        UVec2::new(192, 108)
-    };
-    let mut table = Table::new(&["sequence", "variant", "frame", "mean", "p99", "lag"]);
+    let size = run.size([64, 36], [192, 108]);
+    let mut table = Table::new("sequence,variant,frame,mean,p99,lag");
     for name in run.some(1, SEQUENCES) {
         let sequence = play(name, size);
         let exact = ranges(&sequence, None);

@@ -1,22 +1,21 @@
-//! How the cost grows with pixels, vertices and cameras, and the experiment of [CS].
+//! How the cost grows with pixels, vertices and cameras.
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 
 use bevy_comics::{Colorization, ComicStyle, DepthMap};
-use bevy_comics_testkit::{bench, headless::new_target, scenes::BuiltIn, work::default_comic};
+use bevy_comics_testkit::{headless::new_target, scenes::BuiltIn, work::default_comic};
 
 use crate::{
     Run,
     costs::GROWING,
     ladder::ball,
-    rig::{self, Drawn, Rig},
-    table::Table,
+    rig::{self, Rig},
 };
 
 pub fn measure(run: &Run) -> Result<(), String> {
     // Large pictures take long, and their times vary little.
     let few = run.with_rounds(run.rounds.min(3));
-    let comic = [(GROWING.to_owned(), Drawn::style(default_comic()))];
+    let comic = rig::styles([(GROWING, default_comic())]);
     // The same with a pass fewer, and a style of one pass.
     let fewer = [
         (
@@ -34,22 +33,18 @@ pub fn measure(run: &Run) -> Result<(), String> {
             ComicStyle::new().with(Colorization::SEPIA),
         ),
     ];
-    let fewer = fewer.map(|(name, style)| (name.to_owned(), Drawn::style(style)));
-    let by_pixels = [&comic[..], &fewer].concat();
+    let by_pixels = [comic.clone(), rig::styles(fewer)].concat();
     let mut times = rig::times();
-    let sizes: &[(u32, u32)] = if run.quick {
-        &[(96, 96), (192, 192)]
-    } else {
-        &[
-            (256, 256),
-            (512, 512),
-            (1024, 1024),
-            (1920, 1080),
-            (2048, 2048),
-            (3840, 2160),
-        ]
-    };
-    for &(width, height) in sizes {
+    let sizes = [
+        (256, 256),
+        (512, 512),
+        (1024, 1024),
+        (1920, 1080),
+        (2048, 2048),
+        (3840, 2160),
+    ];
+    let sizes = run.pick(vec![(96, 96), (192, 192)], sizes.to_vec());
+    for (width, height) in sizes {
         let mut rig = Rig::new(Some(BuiltIn::Teapot), UVec2::new(width, height));
         rig.unlight();
         let what = format!("{width}x{height}");
@@ -61,13 +56,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
         let styles = run.some(1, by_pixels.iter().cloned());
         rig::record(run, &mut times, "pixels", &what, &mut rig, &styles);
     }
-    let counts: &[u32] = if run.quick {
-        &[1_000, 10_000]
-    } else {
-        &[1_000, 10_000, 100_000, 1_000_000, 4_000_000]
-    };
-    let side = UVec2::splat(if run.quick { 128 } else { 512 });
-    for &vertices in counts {
+    let counts = run.some(2, [1_000, 10_000, 100_000, 1_000_000, 4_000_000]);
+    let side = run.size([128; 2], [512; 2]);
+    for vertices in counts {
         let mut rig = Rig::new(None, side);
         ball(&mut rig, vertices);
         rig.headless.step(2);
@@ -98,29 +89,5 @@ pub fn measure(run: &Run) -> Result<(), String> {
         let what = cameras.to_string();
         rig::record(run, &mut times, "cameras", &what, &mut rig, &comic);
     }
-    run.save("growth_times", &times)?;
-    paper(run)
-}
-
-/// Whole frames of one million vertices at 512x512, with and without the default comic.
-fn paper(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&["app", "round", "milliseconds"]);
-    let vertices = if run.quick { 10_000 } else { 1_000_000 };
-    let mut rig = Rig::new(None, UVec2::splat(if run.quick { 128 } else { 512 }));
-    ball(&mut rig, vertices);
-    let rounds = if run.quick { 3 } else { 20 };
-    for round in 0..=rounds {
-        for (name, drawn) in [
-            ("without the model", Drawn::Nothing),
-            ("with the model", Drawn::style(default_comic())),
-        ] {
-            rig.set_drawn(&drawn);
-            rig.headless.step(3);
-            let ms = bench::whole_frame(&mut rig.headless);
-            if round > 0 {
-                table.push(&[&name, &round, &format!("{ms:.4}")]);
-            }
-        }
-    }
-    run.save("paper_times", &table)
+    run.save("growth_times", &times)
 }

@@ -10,20 +10,18 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_comics::{ComicStyle, Outlines, objects::MeshSections};
+use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
     read_back,
     scenes::BuiltIn,
     specimens::Specimen,
-    studio::set_sections,
     truth::{FINE, Truth, at_places, ends_of_lines, ids_alone},
 };
 
 use crate::{
     Run,
     models::Studio,
-    rig::{Drawn, Rig},
-    steps,
+    rig::{Drawn, Rig, middle_of},
     table::Table,
 };
 
@@ -34,18 +32,11 @@ const NEAR_END: i64 = 2 * FINE as i64;
 /// finer picture.
 const ELSEWHERE: [i64; 2] = [44, -36];
 
-/// The variant whose mesh has sections.
-const IN_SECTIONS: &str = "mesh in sections";
-
 /// Ends of lines on models that turn, with and without continuing along weak edges; and how many
 /// of them are where true lines end.
 pub fn dashes(run: &Run) -> Result<(), String> {
-    let (frames, size) = if run.quick {
-        (2, UVec2::new(120, 68))
-    } else {
-        (90, UVec2::new(240, 136))
-    };
-    let mut table = Table::new(&["model", "method", "ends", "true", "true_ends", "by_chance"]);
+    let (frames, size) = (run.pick(2, 90), run.size([120, 68], [240, 136]));
+    let mut table = Table::new("model,method,ends,true,true_ends,by_chance");
     let mut fine = Studio::new(size * FINE, ids_alone());
     let whole = Outlines {
         ink_budget: 1.0,
@@ -90,68 +81,6 @@ pub fn dashes(run: &Run) -> Result<(), String> {
         run.say(&format!("{model}: ends counted"));
     }
     run.save("ink_dashes", &table)
-}
-
-/// Ends of lines on the organic model while it turns, with one setting changed at a time.
-pub fn dash_steps(run: &Run) -> Result<(), String> {
-    let (frames, size) = if run.quick {
-        (2, UVec2::new(120, 68))
-    } else {
-        (90, UVec2::new(240, 136))
-    };
-    let turned = |frame| frame as f32 / frames as f32;
-    let parts = || -> Vec<Mesh> {
-        let parts = Specimen::Organic.parts().into_iter();
-        parts.map(|(mesh, _)| mesh).collect()
-    };
-    let mut fine = Studio::new(size * FINE, ids_alone());
-    fine.show_meshes(parts());
-    fine.rig.headless.step(4);
-    let (mut length, mut truth) = (0, Vec::new());
-    for frame in 0..frames {
-        fine.turn(2.6, turned(frame));
-        let lines = fine.rig.truth(size, FINE).any(&[0, 1, 2]);
-        length += lines.iter().filter(|line| **line).count();
-        truth.push(fine_ends(&fine.rig));
-    }
-    let default = Outlines {
-        ink_budget: 1.0,
-        ..default()
-    };
-    let kept = Outlines {
-        hold_frames: 8,
-        ..default
-    };
-    let mut variants = run.some(2, steps::variants());
-    variants.push(("hold_frames 8", kept));
-    variants.push((IN_SECTIONS, default));
-    let mut table = Table::new(&["method", "ends", "true", "true_ends", "by_chance"]);
-    for (method, outlines) in variants {
-        let mut lined = Studio::new(size, outlines);
-        lined.show_meshes(parts());
-        if method == IN_SECTIONS {
-            set_sections(lined.rig.headless.app.world_mut(), MeshSections::default());
-        }
-        lined.rig.headless.step(if run.quick { 4 } else { 30 });
-        let mut counts = Ends::default();
-        for (frame, true_ends) in truth.iter().enumerate() {
-            lined.turn(2.6, turned(frame));
-            let world = lined.rig.headless.app.sub_app(RenderApp).world();
-            let cracks = read_back::cracks(world, lined.rig.view());
-            counts.add(
-                &cracks.as_ref().map(ends_of_lines).unwrap_or_default(),
-                true_ends,
-            );
-        }
-        let Ends {
-            all,
-            true_ends,
-            by_chance,
-        } = counts;
-        table.push(&[&method, &all, &length, &true_ends, &by_chance]);
-        run.say(&format!("{method}: ends counted"));
-    }
-    run.save("ink_dash_steps", &table)
 }
 
 /// Where the lines of the truth end, in pixels of the finer picture.
@@ -207,7 +136,7 @@ fn flat(mesh: Mesh) -> Mesh {
 }
 
 /// Makes everything white but the lines: what anti-aliasing does to the picture does not count.
-pub fn whiten(rig: &mut Rig) {
+fn whiten(rig: &mut Rig) {
     let camera = rig.camera;
     let world = rig.headless.app.world_mut();
     world.insert_resource(ClearColor(Color::WHITE));
@@ -229,12 +158,9 @@ pub fn whiten(rig: &mut Rig) {
 
 /// Pixels that change by more than two codes from frame to frame, and the time of a frame.
 pub fn memory(run: &Run) -> Result<(), String> {
-    let (settled, frames, timed, size) = if run.quick {
-        (4, 2, 1, UVec2::new(160, 90))
-    } else {
-        (150, 64, 21, UVec2::new(640, 360))
-    };
-    let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
+    let (settled, frames, timed) = run.pick((4, 2, 1), (150, 64, 21));
+    let size = run.size([160, 90], [640, 360]);
+    let mut table = Table::new("scene,method,changed,pixels,ms");
     let lines = |history_weight: f32| {
         Drawn::style(ComicStyle::new().with(Outlines {
             history_weight,
@@ -243,8 +169,8 @@ pub fn memory(run: &Run) -> Result<(), String> {
     };
     let methods = [
         ("no lines", Drawn::Nothing),
-        ("no history", lines(0.0)),
-        ("history", lines(0.875)),
+        ("no memory", lines(0.0)),
+        ("memory", lines(0.875)),
     ];
     for scene in run.some(1, [BuiltIn::Teapot, BuiltIn::Village]) {
         let mut rig = Rig::new(Some(scene), size);
@@ -269,16 +195,13 @@ pub fn memory(run: &Run) -> Result<(), String> {
                 changed += before.pixels().zip(now.pixels()).filter(differ).count();
                 before = now;
             }
-            let mut times: Vec<f64> = (0..timed)
-                .map(|_| {
-                    let start = Instant::now();
-                    rig.headless.step(1);
-                    1e3 * start.elapsed().as_secs_f64()
-                })
-                .collect();
-            times.sort_by(f64::total_cmp);
+            let times = (0..timed).map(|_| {
+                let start = Instant::now();
+                rig.headless.step(1);
+                1e3 * start.elapsed().as_secs_f64()
+            });
+            let ms = format!("{:.4}", middle_of(times));
             let pixels = frames * (size.x * size.y) as usize;
-            let ms = format!("{:.4}", times[times.len() / 2]);
             table.push(&[&scene.name(), method, &changed, &pixels, &ms]);
         }
         run.say(&format!("{}: changes counted", scene.name()));

@@ -1,6 +1,6 @@
 //! What a style does not need is left out: its work is counted and timed.
 
-use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
+use bevy::prelude::*;
 use bevy_comics::ComicsPlugin;
 
 use bevy_comics_testkit::{
@@ -12,29 +12,12 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{self, Drawn, Rig},
+    rig::{self, Rig},
     table::Table,
 };
 
-/// The header of the table of counted work.
-pub const WORK: [&str; 13] = [
-    "style",
-    "passes",
-    "ran",
-    "left_out",
-    "bindings",
-    "fetches",
-    "most",
-    "bytes",
-    "walk",
-    "find",
-    "columns",
-    "draw",
-    "line_bytes",
-];
-
 /// The row of a counted style.
-pub fn work_row(work: &work::Work) -> Vec<String> {
+fn work_row(work: &work::Work) -> Vec<String> {
     vec![
         work.name.replace(',', ";"),
         work.ran.len().to_string(),
@@ -63,28 +46,22 @@ fn idle(run: &Run) -> Result<(), String> {
         "without the plugin again",
     ] {
         let options = bench::options(size);
-        let mut headless = if name == "idle plugin" {
-            Headless::new(options, ComicsPlugin)
-        } else {
-            Headless::new(options, ())
+        let mut headless = match name {
+            "idle plugin" => Headless::new(options, ComicsPlugin),
+            _ => Headless::new(options, ()),
         };
         let target = headless.render_target();
         let world = headless.app.world_mut();
-        let mesh = world
-            .resource_mut::<Assets<Mesh>>()
-            .add(Cuboid::from_length(1.0));
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(StandardMaterial::default());
-        world.spawn((Mesh3d(mesh), MeshMaterial3d(material)));
+        let mesh = Mesh3d(world.add_asset(Cuboid::from_length(1.0)));
+        let material = world.add_asset::<StandardMaterial>(StandardMaterial::default());
+        world.spawn((mesh, MeshMaterial3d(material)));
         let at = Transform::from_xyz(2.0, 2.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y);
         world.spawn((Camera3d::default(), at, target, Msaa::Off));
         headless.step(10);
         apps.push((name, headless));
     }
-    let mut table = Table::new(&["app", "round", "milliseconds"]);
-    let rounds = if run.quick { 10 } else { 300 };
-    for round in 0..rounds {
+    let mut table = Table::new("app,round,milliseconds");
+    for round in 0..run.pick(10, 300) {
         for (name, headless) in &mut apps {
             let ms = bench::whole_frame(headless);
             table.push(&[name, &round, &format!("{ms:.4}")]);
@@ -95,71 +72,14 @@ fn idle(run: &Run) -> Result<(), String> {
 }
 
 /// Spawns a lit ball of about `vertices` vertices in the middle of the view.
-pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
+pub fn ball(rig: &mut Rig, vertices: u32) {
     let side = (f64::from(vertices).sqrt().round() as u32).max(4);
-    let world = rig.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Sphere::new(1.0).mesh().uv(side - 1, side - 1));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgb(0.7, 0.4, 0.3),
-            ..default()
-        });
+    let material = StandardMaterial::from_color(Color::srgb(0.7, 0.4, 0.3));
     let light = DirectionalLight::default();
+    let world = rig.headless.app.world_mut();
     world.spawn((light, Transform::from_rotation(Quat::from_rotation_x(-0.7))));
-    world
-        .spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
-            Transform::from_xyz(0.0, 0.0, -3.0),
-        ))
-        .id()
-}
-
-/// Times the engine's passes with and without a depth prepass, which may cost or save time.
-fn prepass(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(640, 360)
-    };
-    let mut table = Table::new(&["scene", "prepass", "round", "milliseconds"]);
-    let scenes = BuiltIn::MEASURED.into_iter().map(Some).chain([None]);
-    for scene in scenes.skip(if run.quick {
-        BuiltIn::MEASURED.len()
-    } else {
-        0
-    }) {
-        let name = scene.map_or("a million vertices", BuiltIn::name);
-        let mut rig = Rig::new(scene, size);
-        if scene.is_none() {
-            ball(&mut rig, if run.quick { 10_000 } else { 1_000_000 });
-        }
-        for round in 0..=run.rounds {
-            for with in ["no", "yes"] {
-                let mut camera = rig.headless.app.world_mut().entity_mut(rig.camera);
-                match with {
-                    "yes" => camera.insert(DepthPrepass),
-                    _ => camera.remove::<DepthPrepass>(),
-                };
-                rig.headless.step(3);
-                let laps = bench::laps(&mut rig.headless, run.frames);
-                let mut sums: Vec<f64> = laps
-                    .iter()
-                    .map(|l| l[bench::Lap::Prepass as usize] + l[bench::Lap::Main as usize])
-                    .collect();
-                sums.sort_by(f64::total_cmp);
-                if round > 0 {
-                    let ms = format!("{:.4}", sums[sums.len() / 2]);
-                    table.push(&[&name, &with, &round, &ms]);
-                }
-            }
-        }
-        run.say(&format!("{name}: prepass timed"));
-    }
-    run.save("prepass_times", &table)
+    let mesh = Sphere::new(1.0).mesh().uv(side - 1, side - 1);
+    rig.put(mesh, material, Transform::from_xyz(0.0, 0.0, -3.0));
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -168,25 +88,20 @@ pub fn measure(run: &Run) -> Result<(), String> {
         // With lines, and everything else.
         styles.extend(work::ladder().pop());
     }
-    let size = if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(1280, 720)
-    };
-    let variants: Vec<(String, Drawn)> = styles
-        .iter()
-        .map(|(name, style)| (name.replace(',', ";"), Drawn::style(style.clone())))
-        .collect();
+    let size = run.size([320, 180], [1280, 720]);
+    let named = styles.iter().cloned();
+    let variants = rig::styles(named.map(|(name, style)| (name.replace(',', ";"), style)));
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
     rig::record(run, &mut times, "ladder", "teapot", &mut rig, &variants);
     run.save("ladder_times", &times)?;
     idle(run)?;
-    prepass(run)?;
 
     // The same on every adapter, so it is last where the time is short.
-    let mut counted = Table::new(&WORK);
+    let mut counted = Table::new(
+        "style,passes,ran,left_out,bindings,fetches,most,bytes,walk,find,columns,draw,line_bytes",
+    );
     let mut counter = WorkCounter::default();
     for (name, style) in &styles {
         counted.rows.push(work_row(&counter.count(name, style)));

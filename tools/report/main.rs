@@ -9,18 +9,15 @@
 //! ```
 
 mod arguments;
-mod bare;
 mod capture;
 mod costs;
 mod document;
-mod encodings;
 mod flicker;
 mod growth;
 mod ink;
 mod ladder;
 mod lines;
 mod many_objects;
-mod meadow;
 mod models;
 mod page;
 mod page_styles;
@@ -34,7 +31,6 @@ mod sections;
 mod soak;
 mod stability;
 mod stamp;
-mod steps;
 mod straight;
 mod table;
 mod toon;
@@ -50,6 +46,7 @@ use std::{
 };
 
 use arguments::Arguments;
+use bevy::math::UVec2;
 use bevy_comics_testkit::{
     bench,
     headless::{self, Headless, HeadlessOptions},
@@ -82,6 +79,16 @@ impl Run {
     pub fn some<T>(&self, few: usize, all: impl IntoIterator<Item = T>) -> Vec<T> {
         let count = if self.quick { few } else { usize::MAX };
         all.into_iter().take(count).collect()
+    }
+
+    /// What a quick run has, or any other.
+    pub fn pick<T>(&self, quick: T, all: T) -> T {
+        if self.quick { quick } else { all }
+    }
+
+    /// The size of pictures in a quick run, or in any other.
+    pub fn size(&self, quick: [u32; 2], size: [u32; 2]) -> UVec2 {
+        self.pick(quick, size).into()
     }
 
     /// The same with another number of rounds.
@@ -200,14 +207,16 @@ fn machine(run: &Run) -> Result<(), String> {
     let adapter = headless::adapter()?;
     let headless = Headless::new(
         HeadlessOptions {
-            size: bevy::math::UVec2::new(16, 16),
+            size: UVec2::new(16, 16),
             ..Default::default()
         },
         bevy_comics::ComicsPlugin,
     );
     let clean = |text: String| text.replace([',', '\n'], ";");
     let info = &adapter.info;
-    let mut table = Table::new(&["what", "value"]);
+    let mut table = Table::new("what,value");
+    let is_dev = cfg!(debug_assertions);
+    let build = if is_dev { "dev" } else { "release" };
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     for (what, value) in [
         ("date", run.stamp.date.clone()),
@@ -219,15 +228,7 @@ fn machine(run: &Run) -> Result<(), String> {
         ("cores", cores.to_string()),
         ("operating system", std::env::consts::OS.to_owned()),
         ("architecture", std::env::consts::ARCH.to_owned()),
-        (
-            "build",
-            if cfg!(debug_assertions) {
-                "dev"
-            } else {
-                "release"
-            }
-            .to_owned(),
-        ),
+        ("build", build.to_owned()),
         ("times", bench::method(&headless).to_owned()),
         (
             "repetitions",

@@ -69,46 +69,32 @@ enum Variant {
 }
 
 impl Variant {
-    const ALL: [Self; 17] = [
-        Self::WithoutPlugin,
-        Self::Idle,
-        Self::Prepasses,
-        Self::Floor,
-        Self::WithoutIds,
-        Self::Outlines,
-        Self::NoOutlines,
-        Self::Moving,
-        Self::Turning,
-        Self::Meshes,
-        Self::Cameras,
-        Self::ManyCameras,
-        Self::IdleCameras,
-        Self::UnseenWithoutPlugin,
-        Self::UnseenIdle,
-        Self::EmptyScene,
-        Self::Scenes,
+    const ALL: [(Self, &str); 17] = [
+        (Self::WithoutPlugin, "without the plugin"),
+        (Self::Idle, "idle plugin"),
+        (Self::Prepasses, "depth and normal prepass"),
+        (Self::Floor, "depth and normal prepass; drawn twice"),
+        (Self::WithoutIds, "outlines without object edges"),
+        (Self::Outlines, "outlines"),
+        (Self::NoOutlines, "outlines; one object without"),
+        (Self::Moving, "outlines; 1 % move"),
+        (Self::Turning, "outlines; the camera turns"),
+        (Self::Meshes, "outlines; 1000 meshes"),
+        (Self::Cameras, "outlines; 8 cameras"),
+        (Self::ManyCameras, "outlines; 50 cameras"),
+        (Self::IdleCameras, "idle plugin; 50 cameras"),
+        (
+            Self::UnseenWithoutPlugin,
+            "without the plugin; none in view",
+        ),
+        (Self::UnseenIdle, "idle plugin; none in view"),
+        (Self::EmptyScene, "idle; an empty toon scene"),
+        (Self::Scenes, "idle; 1000 toon scenes"),
     ];
 
     fn name(self) -> &'static str {
-        match self {
-            Self::WithoutPlugin => "without the plugin",
-            Self::Idle => "idle plugin",
-            Self::Prepasses => "depth and normal prepass",
-            Self::Floor => "depth and normal prepass; drawn twice",
-            Self::WithoutIds => "outlines without object edges",
-            Self::Outlines => "outlines",
-            Self::NoOutlines => "outlines; one object without",
-            Self::Moving => "outlines; 1 % move",
-            Self::Turning => "outlines; the camera turns",
-            Self::Meshes => "outlines; 1000 meshes",
-            Self::Cameras => "outlines; 8 cameras",
-            Self::ManyCameras => "outlines; 50 cameras",
-            Self::IdleCameras => "idle plugin; 50 cameras",
-            Self::UnseenWithoutPlugin => "without the plugin; none in view",
-            Self::UnseenIdle => "idle plugin; none in view",
-            Self::EmptyScene => "idle; an empty toon scene",
-            Self::Scenes => "idle; 1000 toon scenes",
-        }
+        let named = Self::ALL.iter().find(|(variant, _)| *variant == self);
+        named.map_or("", |(_, name)| *name)
     }
 
     fn has_lines(self) -> bool {
@@ -391,29 +377,22 @@ impl Crowd {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let header = [
-        &["objects", "variant", "round", "toon_materials"][..],
-        &["id_draws", "uploaded_bytes", "whole"],
-        &STAGES,
-        &[OF_IDS],
-    ]
-    .concat();
-    let mut table = Table::new(&header);
-    let counts: &[usize] = if run.quick {
-        &[1, 100]
-    } else {
-        &[1, 1_000, 10_000, 20_000, 60_000, 100_000]
-    };
-    let frames = if run.quick { 1 } else { 9 };
+    let mut table = Table::new(&format!(
+        "objects,variant,round,toon_materials,id_draws,uploaded_bytes,whole,{},{OF_IDS}",
+        STAGES.join(",")
+    ));
+    let all = [1, 1_000, 10_000, 20_000, 60_000, 100_000];
+    let counts = run.pick(vec![1, 100], all.to_vec());
+    let frames = run.pick(1, 9);
     // The apps without the plugin are timed once more in the end: that shows the noise.
     let again = [Variant::WithoutPlugin, Variant::UnseenWithoutPlugin].map(|again| (again, true));
-    let variants = Variant::ALL.map(|variant| (variant, false));
+    let variants = Variant::ALL.map(|(variant, _)| (variant, false));
     let variants = run.some(6, variants.into_iter().chain(again));
     // Those that are compared take turns, so that a slower minute of the machine slows all of them.
     let groups: Vec<_> = variants
         .chunk_by(|(a, _), (b, _)| a.takes_turns() && b.takes_turns())
         .collect();
-    for &count in counts {
+    for count in counts {
         for group in &groups {
             measure_group(run, &mut table, count, group, frames);
         }

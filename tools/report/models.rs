@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
 
 use crate::{
     Run,
-    rig::{Drawn, Rig},
+    rig::{Drawn, Rig, unlit},
     table::Table,
 };
 
@@ -51,18 +51,14 @@ impl Studio {
         for part in self.parts.drain(..) {
             world.despawn(part);
         }
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(StandardMaterial {
-                unlit: true,
-                double_sided: true,
-                cull_mode: None,
-                ..default()
-            });
+        let material = StandardMaterial {
+            double_sided: true,
+            cull_mode: None,
+            ..unlit(Color::WHITE)
+        };
         for mesh in meshes {
-            let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-            let part = world.spawn((Mesh3d(mesh), MeshMaterial3d(material.clone())));
-            self.parts.push(part.id());
+            let part = self.rig.put(mesh, material.clone(), Transform::IDENTITY);
+            self.parts.push(part);
         }
     }
 
@@ -83,25 +79,9 @@ impl Studio {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&[
-        "model",
-        "distance",
-        "frame",
-        "found",
-        "true",
-        "right",
-        "drawn",
-        "false",
-        "wrong",
-        "pixels",
-        "fragments",
-        "line",
-    ]);
-    let (frames, size) = if run.quick {
-        (1, UVec2::new(120, 68))
-    } else {
-        (90, UVec2::new(240, 136))
-    };
+    let mut table =
+        Table::new("model,distance,frame,found,true,right,drawn,false,wrong,pixels,fragments,line");
+    let (frames, size) = (run.pick(1, 90), run.size([120, 68], [240, 136]));
     let mut fine = Studio::new(size * FINE, ids_alone());
     // Without the ink budget, which makes crowded lines too thin for the mask.
     let found = Outlines {

@@ -25,7 +25,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_errors", &errors(run))?;
     run.save("page_harmonies", &harmonies(run))?;
     run.say("painted");
-    let mut table = Table::new(&["effect", "texels", "most", "bytes"]);
+    let mut table = Table::new("effect,texels,most,bytes");
     let mut counter = PageCounter::default();
     for (name, style) in run.some(4, page_work::effects()) {
         let work = counter.count(name, &style);
@@ -64,14 +64,10 @@ fn lightness_error(mode: HarmonyMode) -> f64 {
 
 /// Tones, jumps and moire of all screens.
 fn screens(run: &Run) -> Table {
-    let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
-    let periods = if run.quick {
-        &CELL_SIZES[2..3]
-    } else {
-        &CELL_SIZES
-    };
+    let mut table = Table::new("what,period,tone,jump,moire");
+    let periods = run.pick(&CELL_SIZES[2..3], &CELL_SIZES[..]).to_vec();
     for shape in run.some(1, SHAPES) {
-        for &period in periods {
+        for &period in &periods {
             let (tone, ..) = tone_error(shape, period);
             let (jump, _) = largest_jump(shape, period);
             let angles = [0.0, 15.0, 45.0];
@@ -97,7 +93,7 @@ fn screens(run: &Run) -> Table {
 /// Colors of four inks: ideal ones, ones that all take some of all light, and these without the
 /// phase of black.
 fn colors(run: &Run) -> Table {
-    let mut table = Table::new(&["black", "ideal", "grey", "in_phase", "beats"]);
+    let mut table = Table::new("black,ideal,grey,in_phase,beats");
     for black in run.some(1, [0.0, 0.5, 1.0]) {
         let s = Halftone {
             black_generation: black,
@@ -140,7 +136,7 @@ fn errors(run: &Run) -> Table {
     let classic = "difference from Kuwahara's quadrants; linear light";
     let position = "movement of edges; px";
     let colors = "colours of a sharp figure outside it; linear light";
-    let mut table = Table::new(&["effect", "what", "error", "limit"]);
+    let mut table = Table::new("effect,what,error,limit");
     let mut push = |effect: &str, what: &str, error: f64, limit: f64| {
         table.push(&[&effect, &what, &format!("{error:.2e}"), &limit]);
     };
@@ -184,7 +180,7 @@ fn errors(run: &Run) -> Table {
 
 /// The largest changes of lightness by all harmonies.
 fn harmonies(run: &Run) -> Table {
-    let mut harmonies = Table::new(&["mode", "lightness"]);
+    let mut harmonies = Table::new("mode,lightness");
     let modes = [
         HarmonyMode::TwoHues,
         HarmonyMode::Distance,

@@ -9,130 +9,74 @@ use bevy_comics::{
     },
 };
 
-/// A style of one effect.
-fn alone<E: Effect>(effect: E) -> ComicStyle {
+/// A style of one effect, with changes of its defaults.
+pub fn changed<E: Effect>(change: fn(&mut E)) -> ComicStyle {
+    let mut effect = E::default();
+    change(&mut effect);
     ComicStyle::new().with(effect)
+}
+
+fn plain<E: Effect>() -> ComicStyle {
+    changed::<E>(|_| ())
 }
 
 /// All of them, with the names of their rows.
 pub fn all() -> Vec<(&'static str, ComicStyle)> {
-    let mut all = prints();
-    all.extend(strokes());
-    all.extend(planes());
-    all.extend(paintings());
-    all.extend([
-        ("tone ramp", alone(ToneRamp::default())),
-        ("two tones", alone(TwoTone::default())),
-        ("speed lines", alone(SpeedLines::default())),
-        ("black flats", alone(BlackFlats::default())),
-        (
-            "black flats; steep slopes too",
-            alone(BlackFlats {
-                slope: Some(0.02),
-                ..BlackFlats::default()
-            }),
-        ),
-        ("vignette", alone(Vignette::default())),
-        (
-            "halftone; misregistration and paper",
-            alone(Misregistration::default())
-                .with(Halftone::default())
-                .with(Paper::default()),
-        ),
-    ]);
-    all
-}
-
-fn prints() -> Vec<(&'static str, ComicStyle)> {
-    let default = Halftone::default();
-    vec![
-        ("halftone of four inks", alone(default)),
-        (
-            "halftone of one ink",
-            alone(Halftone {
-                mode: HalftoneMode::Spot,
-                shape: ScreenShape::Round,
-                ..default
-            }),
-        ),
-        (
-            "halftone of four inks in grains",
-            alone(Halftone {
-                shape: ScreenShape::Stochastic,
-                ..default
-            }),
-        ),
-        (
-            "halftone of four inks; whole dots",
-            alone(Halftone {
-                sampling: ScreenSampling::Cell,
-                ..default
-            }),
-        ),
-        ("misregistration", alone(Misregistration::default())),
-    ]
-}
-
-fn strokes() -> Vec<(&'static str, ComicStyle)> {
-    vec![
-        ("hatching", alone(Hatching::default())),
-        (
-            "hatching; dots",
-            alone(Hatching {
-                marks: HatchingMarks::Dots,
-                ..Hatching::default()
-            }),
-        ),
-        (
-            "hatching; simplify_small",
-            alone(Hatching {
-                simplify_small: 1.0,
-                ..Hatching::default()
-            }),
-        ),
-    ]
-}
-
-fn planes() -> Vec<(&'static str, ComicStyle)> {
-    let pixels = DepthLayers {
-        granularity: Granularity::Pixel,
-        ..DepthLayers::default()
-    };
-    let fixed = DepthLayers {
-        granularity: Granularity::Pixel,
-        borders: LayerBorders::Fixed,
-        ..DepthLayers::default()
-    };
-    vec![
-        ("color harmony", alone(ColorHarmony::default())),
-        ("abstraction", alone(Abstraction::default())),
-        ("depth layers", alone(DepthLayers::default())),
-        ("depth layers; of pixels", alone(pixels)),
-        ("depth layers; of pixels; fixed borders", alone(fixed)),
-    ]
-}
-
-fn paintings() -> Vec<(&'static str, ComicStyle)> {
+    let halftone = changed::<Halftone>;
+    let hatching = changed::<Hatching>;
+    let layers = changed::<DepthLayers>;
     let focus = |style: FocusStyle| {
-        alone(Focus {
+        ComicStyle::new().with(Focus {
             at: FocusAt::Center,
             style,
             ..Focus::default()
         })
     };
+    let spot = |s: &mut Halftone| (s.mode, s.shape) = (HalftoneMode::Spot, ScreenShape::Round);
+    let fixed = |s: &mut DepthLayers| {
+        (s.granularity, s.borders) = (Granularity::Pixel, LayerBorders::Fixed);
+    };
+    let grains = |s: &mut Halftone| s.shape = ScreenShape::Stochastic;
+    let whole = |s: &mut Halftone| s.sampling = ScreenSampling::Cell;
+    let pixels = |s: &mut DepthLayers| s.granularity = Granularity::Pixel;
+    let steep = changed::<BlackFlats>(|s| s.slope = Some(0.02));
+    let along_edges = changed::<Paint>(|s| s.kernel = PaintKernel::Anisotropic);
+    let printed = plain::<Misregistration>()
+        .with(Halftone::default())
+        .with(Paper::default());
     vec![
-        ("paper", alone(Paper::default())),
-        ("paint", alone(Paint::default())),
+        ("halftone of four inks", plain::<Halftone>()),
+        ("halftone of one ink", halftone(spot)),
+        ("halftone of four inks in grains", halftone(grains)),
+        ("halftone of four inks; whole dots", halftone(whole)),
+        ("misregistration", plain::<Misregistration>()),
+        ("hatching", plain::<Hatching>()),
         (
-            "paint; strokes along edges",
-            alone(Paint {
-                kernel: PaintKernel::Anisotropic,
-                ..Paint::default()
-            }),
+            "hatching; dots",
+            hatching(|s| s.marks = HatchingMarks::Dots),
         ),
+        (
+            "hatching; simplify_small",
+            hatching(|s| s.simplify_small = 1.0),
+        ),
+        ("color harmony", plain::<ColorHarmony>()),
+        ("abstraction", plain::<Abstraction>()),
+        ("depth layers", plain::<DepthLayers>()),
+        ("depth layers; of pixels", layers(pixels)),
+        ("depth layers; of pixels; fixed borders", layers(fixed)),
+        ("paper", plain::<Paper>()),
+        ("paint", plain::<Paint>()),
+        ("paint; strokes along edges", along_edges),
         ("focus; blur", focus(FocusStyle::Blur)),
         ("focus; offset", focus(FocusStyle::Offset)),
         ("focus; paint", focus(FocusStyle::Paint)),
         ("focus; dots", focus(FocusStyle::Dots)),
+        ("tone ramp", plain::<ToneRamp>()),
+        ("two tones", plain::<TwoTone>()),
+        ("speed lines", plain::<SpeedLines>()),
+        ("black flats", plain::<BlackFlats>()),
+        ("black flats; steep slopes too", steep),
+        ("vignette", plain::<Vignette>()),
+        ("halftone; misregistration and paper", printed),
     ]
 }

@@ -16,81 +16,48 @@ use bevy_comics::{
 use bevy_comics_testkit::scenes::BuiltIn;
 
 use crate::{
-    Run, page_styles,
+    Run,
+    page_styles::{self, changed},
     rig::{self, Drawn, Rig},
 };
 
 /// Outlines of which one thing differs from the default.
-fn lines() -> Vec<(String, Drawn)> {
-    let default = Outlines::default();
-    [
-        ("outlines", default),
-        (
-            "gaps up to 3 pixels closed",
-            Outlines {
-                gap_closing: 3,
-                ..default
-            },
-        ),
-        (
-            "overshooting by 8 pixels",
-            Outlines {
-                overshoot: 8.0,
-                ..default
-            },
-        ),
-        (
-            "persistent for 4 frames",
-            Outlines {
-                hold_frames: 4,
-                ..default
-            },
-        ),
-        (
-            "under pressure",
-            Outlines {
-                weight: LineWeight {
-                    pressure: 0.5,
-                    ..LineWeight::EVEN
-                },
-                ..default
-            },
-        ),
-        (
-            "without an ink budget",
-            Outlines {
-                ink_budget: 1.0,
-                ..default
-            },
-        ),
-        (
-            "with soft ink",
-            Outlines {
-                silhouettes: Some(Silhouettes {
-                    softness: 1.0,
-                    ..Default::default()
-                }),
-                creases: Some(Creases {
-                    softness: 1.0,
-                    ..Default::default()
-                }),
-                response: LineResponse::Both,
-                ..default
-            },
-        ),
+fn lines() -> Vec<(&'static str, ComicStyle)> {
+    let of = changed::<Outlines>;
+    vec![
+        ("outlines", of(|_| ())),
+        ("gaps up to 3 pixels closed", of(|o| o.gap_closing = 3)),
+        ("overshooting by 8 pixels", of(|o| o.overshoot = 8.0)),
+        ("persistent for 4 frames", of(|o| o.hold_frames = 4)),
+        ("under pressure", of(|o| o.weight = pressed())),
+        ("without an ink budget", of(|o| o.ink_budget = 1.0)),
+        ("with soft ink", of(soft)),
         (
             "in the colour of surfaces",
-            Outlines {
-                color: LineColor::SURFACE,
-                ..default
-            },
+            of(|o| o.color = LineColor::SURFACE),
         ),
+        ("and depth layers", layer_lines()),
     ]
-    .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
-    .into_iter()
-    .chain([("and depth layers", layer_lines())])
-    .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
-    .collect()
+}
+
+fn pressed() -> LineWeight {
+    LineWeight {
+        pressure: 0.5,
+        ..LineWeight::EVEN
+    }
+}
+
+fn soft(outlines: &mut Outlines) {
+    let softness = 1.0;
+    outlines.silhouettes = Some(Silhouettes {
+        softness,
+        ..default()
+    });
+    outlines.creases = Some(Creases {
+        softness,
+        ..default()
+    });
+    outlines.response = LineResponse::Both;
 }
 
 /// Outlines with another width and color in near, middle and far.
@@ -100,40 +67,22 @@ fn layer_lines() -> ComicStyle {
     ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
-/// Effects of the page.
-fn page() -> Vec<(String, Drawn)> {
-    page_styles::all()
-        .into_iter()
-        .map(|(name, style)| (name.to_owned(), Drawn::style(style)))
-        .collect()
-}
-
 /// Marks every mesh of the scene.
 fn mark<M: Component + Clone>(rig: &mut Rig, mark: M) {
-    let world = rig.headless.app.world_mut();
-    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-    let meshes: Vec<Entity> = meshes.iter(world).collect();
-    for mesh in meshes {
+    for mesh in rig.meshes() {
+        let world = rig.headless.app.world_mut();
         world.entity_mut(mesh).insert(mark.clone());
     }
 }
 
-fn size(run: &Run) -> UVec2 {
-    if run.quick {
-        UVec2::new(320, 180)
-    } else {
-        UVec2::new(1280, 720)
-    }
-}
-
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = size(run);
+    let size = run.size([320, 180], [1280, 720]);
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
-    let styles = run.some(2, lines());
+    let styles = rig::styles(run.some(2, lines()));
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &styles);
-    let styles = run.some(4, page());
+    let styles = rig::styles(run.some(4, page_styles::all()));
     rig::record(run, &mut times, "page", "teapot", &mut rig, &styles);
     let variants = [
         ("nothing marked", Drawn::Nothing),
@@ -159,11 +108,20 @@ struct Part {
 impl Part {
     /// One style on the changed teapot.
     fn new(name: &'static str, change: fn(&mut Rig), style: ComicStyle) -> Self {
+        Self::on(BuiltIn::Teapot, name, change, vec![(name, style)])
+    }
+
+    fn on(
+        scene: BuiltIn,
+        name: &'static str,
+        change: fn(&mut Rig),
+        styles: Vec<(&'static str, ComicStyle)>,
+    ) -> Self {
         Self {
             name,
-            scene: BuiltIn::Teapot,
+            scene,
             change,
-            styles: vec![(name, style)],
+            styles,
             base: None,
         }
     }
@@ -179,7 +137,7 @@ impl Part {
     }
 
     fn rig(&self, run: &Run, change: fn(&mut Rig)) -> Rig {
-        let mut rig = Rig::new(Some(self.scene), size(run));
+        let mut rig = Rig::new(Some(self.scene), run.size([320, 180], [1280, 720]));
         rig.unlight();
         change(&mut rig);
         rig.headless.step(if run.quick { 5 } else { 30 });
@@ -203,23 +161,12 @@ fn changes() -> Vec<Part> {
     ];
     // The village has lines in most of its tiles, the teapot in few.
     for scene in [BuiltIn::Teapot, BuiltIn::Village] {
-        let forgetful = Outlines {
-            history_weight: 0.0,
-            ..default()
-        };
-        parts.push(Part {
-            name: "temporal anti-aliasing",
-            scene,
-            change: jitter,
-            styles: vec![
-                (
-                    "outlines; temporal anti-aliasing; no memory",
-                    ComicStyle::new().with(forgetful),
-                ),
-                ("outlines; temporal anti-aliasing; memory", outlines()),
-            ],
-            base: None,
-        });
+        let forgetful = changed::<Outlines>(|o| o.history_weight = 0.0);
+        let styles = vec![
+            ("outlines; temporal anti-aliasing; no memory", forgetful),
+            ("outlines; temporal anti-aliasing; memory", outlines()),
+        ];
+        parts.push(Part::on(scene, "temporal anti-aliasing", jitter, styles));
         let creases = |source| {
             let creases = Some(Creases {
                 source,
@@ -230,20 +177,14 @@ fn changes() -> Vec<Part> {
                 ..default()
             })
         };
-        parts.push(Part {
-            name: "what creases are found by",
-            scene,
-            change: |_| (),
-            styles: vec![
-                (
-                    "outlines; creases of normals",
-                    creases(CreaseSource::Normals),
-                ),
-                ("outlines; creases of meshes", creases(CreaseSource::Meshes)),
-                ("outlines; creases of both", creases(CreaseSource::Both)),
-            ],
-            base: None,
-        });
+        let styles = [
+            ("outlines; creases of normals", CreaseSource::Normals),
+            ("outlines; creases of meshes", CreaseSource::Meshes),
+            ("outlines; creases of both", CreaseSource::Both),
+        ];
+        let styles = styles.map(|(name, source)| (name, creases(source)));
+        let name = "what creases are found by";
+        parts.push(Part::on(scene, name, |_| (), styles.to_vec()));
     }
     parts.extend([BuiltIn::Village, BuiltIn::Mountains].map(ink_budget));
     parts
@@ -251,22 +192,17 @@ fn changes() -> Vec<Part> {
 
 /// Two passes measure how densely lines lie. They crowd on the meadow of the mountains.
 fn ink_budget(scene: BuiltIn) -> Part {
-    let outlines = |ink_budget| {
-        ComicStyle::new().with(Outlines {
-            ink_budget,
-            ..default()
-        })
-    };
-    Part {
-        name: "ink budget",
-        scene,
-        change: |_| (),
-        styles: vec![
-            ("outlines; no ink budget", outlines(1.0)),
-            ("outlines; ink budget", outlines(0.35)),
-        ],
-        base: None,
-    }
+    let styles = vec![
+        (
+            "outlines; no ink budget",
+            changed::<Outlines>(|o| o.ink_budget = 1.0),
+        ),
+        (
+            "outlines; ink budget",
+            changed::<Outlines>(|o| o.ink_budget = 0.35),
+        ),
+    ];
+    Part::on(scene, "ink budget", |_| (), styles)
 }
 
 /// Times each change on a scene of its own, in turn with the scene that it is compared with.
@@ -277,9 +213,7 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
     for part in run.some(2, changes()) {
         let mut changed = part.rig(run, part.change);
         let mut base = part.base.map(|change| part.rig(run, change));
-        let named =
-            |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Drawn::style(style.clone()));
-        let variants: Vec<_> = part.styles.iter().map(named).collect();
+        let variants = rig::styles(part.styles.iter().cloned());
         let scene = part.scene.name();
         for _ in 0..rounds {
             if let Some(base) = &mut base {
@@ -291,12 +225,6 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
         }
     }
     run.save("scene_part_times", &times)
-}
-
-fn meshes(rig: &mut Rig) -> Vec<Entity> {
-    let world = rig.headless.app.world_mut();
-    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-    meshes.iter(world).collect()
 }
 
 /// Widths of 0.5 to 1.5, alternating from vertex to vertex.
@@ -314,7 +242,7 @@ fn widths(rig: &mut Rig) {
 
 /// Lines of 1, 2 and 3 pixels, in turn from mesh to mesh.
 fn own_widths(rig: &mut Rig) {
-    let all = meshes(rig);
+    let all = rig.meshes();
     let world = rig.headless.app.world_mut();
     for (i, mesh) in all.into_iter().enumerate() {
         let style = OutlineStyle {
@@ -356,7 +284,7 @@ fn fog(rig: &mut Rig) {
 
 /// Makes the mesh with most vertices transparent. Returns it.
 fn turn_to_glass(rig: &mut Rig) -> Option<Entity> {
-    let all = meshes(rig);
+    let all = rig.meshes();
     let world = rig.headless.app.world_mut();
     let count = |entity: &Entity| {
         let mesh = world.get::<Mesh3d>(*entity);
@@ -388,7 +316,7 @@ fn glass_in_depth(rig: &mut Rig) {
 }
 
 fn unstyled(rig: &mut Rig) {
-    if let Some(mesh) = meshes(rig).first() {
+    if let Some(mesh) = rig.meshes().first() {
         let world = rig.headless.app.world_mut();
         world.entity_mut(*mesh).insert(NoStyle::default());
     }

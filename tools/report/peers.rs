@@ -19,7 +19,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
 pub fn many_objects(run: &Run) -> Result<(), String> {
     let table = if run.quick || std::env::var_os(PROGRAM).is_some() {
         run.say("left out: the other crates");
-        Table::new(&["objects", "variant", "round", "whole"])
+        Table::new("objects,variant,round,whole")
     } else {
         measured("many", 3, 9)?
     };

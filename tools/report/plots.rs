@@ -5,9 +5,9 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::{
-    costs::{GROWING, OWN, bare_costs, costs, growth_exponent, line_score, size},
+    costs::{GROWING, OWN, costs, growth_exponent, line_score, size},
     load,
-    table::{Table, largest},
+    table::Table,
 };
 
 struct Plot<'a> {
@@ -160,77 +160,11 @@ fn blits(machine: &Table, what: &str, times: &Table) -> String {
 
 pub fn draw(folder: &Path) -> Result<(), String> {
     let machine = load(folder, "machine")?;
-    // Errors of the range against time.
-    let errors = load(folder, "range_errors")?;
-    let times = load(folder, "range_times")?;
-    let bare = bare_costs(&load(folder, "range_bare_times")?, "method");
-    let shipped = costs(&times, "ranges", "teapot", &["range"]);
-    let of_shipped = |name: &str| shipped.iter().find(|c| c.name == name).map(|c| c.ratio[1]);
-    let of_bare = |name: &str| bare.iter().find(|b| b.0 == name).map(|b| b.2);
-    let points: Vec<Point> = crate::ranges::METHODS
-        .iter()
-        .filter_map(|method| {
-            let x = match *method {
-                "full" | "previous frame" => of_shipped("BarrierFree")?,
-                "ping-pong" => of_shipped("PingPong")?,
-                // It reads a sixteenth of the pixels per frame, as stride 4.
-                "rotating 4" => of_bare("stride 4")?,
-                stride if stride.starts_with("stride") => of_bare(stride)?,
-                _ => of_shipped("percentiles")?,
-            };
-            let rows = errors.matching(&[("method", method)]);
-            // An error of 0 is drawn at half an ulp of 1: the axis is logarithmic.
-            let y = largest(&errors.numbers(&rows, "map")).max(6e-8);
-            Some((x, y, (*method).to_owned()))
-        })
-        .collect();
-    scatter(
-        folder,
-        &Plot {
-            file: "range.svg",
-            title: "The range: worst error of the map over all scenes",
-            x: &blits(&machine, "time", &times),
-            y: "largest error of the map, 0 to 1 (6e-8: none)",
-            logarithmic: [true, true],
-            joined: false,
-        },
-        &points,
-    )?;
-
-    let errors = load(folder, "encoding_errors")?;
-    let times = load(folder, "encoding_times")?;
-    let points: Vec<Point> = bare_costs(&times, "encoding")
-        .into_iter()
-        .filter(|(name, ..)| !name.starts_with("blit"))
-        .map(|(name, _, ratio)| {
-            let stored = if name.starts_with("none") {
-                "f32 depth".to_owned()
-            } else {
-                name.clone()
-            };
-            let rows = errors.matching(&[("encoding", &stored)]);
-            (ratio, largest(&errors.numbers(&rows, "map")), name)
-        })
-        .collect();
-    scatter(
-        folder,
-        &Plot {
-            file: "encoding.svg",
-            title: "Stored depth: worst error of the map over all scenes",
-            x: &blits(&machine, "time of storing and mapping", &times),
-            y: "largest error of the map, 0 to 1",
-            logarithmic: [false, true],
-            joined: false,
-        },
-        &points,
-    )?;
-
     let scores = load(folder, "line_scores")?;
     let times = load(folder, "line_times")?;
     let costs_of = costs(&times, "lines", "teapot", &OWN);
-    let all: Vec<&Vec<String>> = scores.rows.iter().collect();
     let points: Vec<Point> = scores
-        .distinct(&all, "detector")
+        .values("detector")
         .into_iter()
         .filter_map(|name| {
             let cost = costs_of.iter().find(|c| c.name == name)?;
@@ -270,9 +204,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
     )?;
 
     let flicker = load(folder, "flicker")?;
-    let all: Vec<&Vec<String>> = flicker.rows.iter().collect();
     let points: Vec<Point> = flicker
-        .distinct(&all, "variant")
+        .values("variant")
         .into_iter()
         .map(|variant| {
             let rows = flicker.matching(&[("variant", &variant)]);

@@ -1,7 +1,5 @@
 //! Times variants of one scene and camera in turn: A B C A B C.
 
-use std::collections::BTreeMap;
-
 use bevy::{
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::system::RunSystemOnce,
@@ -44,6 +42,25 @@ impl Drawn {
     pub fn style(style: ComicStyle) -> Self {
         Self::Style(Box::new(style))
     }
+}
+
+/// A material that shows its colour alone.
+pub fn unlit(color: impl Into<Color>) -> StandardMaterial {
+    StandardMaterial {
+        base_color: color.into(),
+        unlit: true,
+        ..default()
+    }
+}
+
+/// Styles with names, as [`record`] takes them.
+pub fn styles<N: Into<String>>(
+    named: impl IntoIterator<Item = (N, ComicStyle)>,
+) -> Vec<(String, Drawn)> {
+    let named = named.into_iter();
+    named
+        .map(|(name, style)| (name.into(), Drawn::style(style)))
+        .collect()
 }
 
 impl Rig {
@@ -94,6 +111,26 @@ impl Rig {
         Truth::read(world, self.view(), size, fine)
     }
 
+    /// Spawns a mesh of one material.
+    pub fn put(
+        &mut self,
+        mesh: impl Into<Mesh>,
+        material: StandardMaterial,
+        at: Transform,
+    ) -> Entity {
+        let world = self.headless.app.world_mut();
+        let mesh = Mesh3d(world.add_asset(mesh));
+        let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(material));
+        world.spawn((mesh, material, at)).id()
+    }
+
+    /// All meshes of the scene.
+    pub fn meshes(&mut self) -> Vec<Entity> {
+        let world = self.headless.app.world_mut();
+        let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
+        meshes.iter(world).collect()
+    }
+
     /// Makes every material unlit: only lines change the picture, and the main pass takes
     /// little time.
     pub fn unlight(&mut self) {
@@ -135,9 +172,7 @@ impl Rig {
                 let frames = bench::laps(&mut self.headless, run.frames);
                 let mut middle = [0.0; bench::LAPS];
                 for (lap, value) in middle.iter_mut().enumerate() {
-                    let mut times: Vec<f64> = frames.iter().map(|f| f[lap]).collect();
-                    times.sort_by(f64::total_cmp);
-                    *value = times[times.len() / 2];
+                    *value = middle_of(frames.iter().map(|frame| frame[lap]));
                 }
                 if round > 0 {
                     all[i].push(middle);
@@ -148,12 +183,16 @@ impl Rig {
     }
 }
 
+/// The upper median.
+pub fn middle_of(times: impl Iterator<Item = f64>) -> f64 {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
 /// Header of every table of times.
 pub fn times() -> Table {
-    Table::new(&[
-        "section", "scene", "variant", "width", "height", "round", "prepass", "range", "lines",
-        "main", "post",
-    ])
+    Table::new("section,scene,variant,width,height,round,prepass,range,lines,main,post")
 }
 
 /// Times the variants together with nothing, a blit, and a second blit that shows the
@@ -191,14 +230,10 @@ pub fn record(
             ]);
         }
     }
-    let mut of: BTreeMap<&str, f64> = BTreeMap::new();
-    for ((name, _), rounds) in all.iter().zip(&laps) {
-        let mut post: Vec<f64> = rounds.iter().map(|l| l[Lap::Post as usize]).collect();
-        post.sort_by(f64::total_cmp);
-        of.insert(name, post[post.len() / 2]);
-    }
+    let [nothing, blit] =
+        [0, 1].map(|i| middle_of(laps[i].iter().map(|laps| laps[Lap::Post as usize])));
+    let blit = blit - nothing;
     run.say(&format!(
-        "{section}, {scene}: blit {:.2} ms over nothing",
-        of["blit"] - of["nothing"]
+        "{section}, {scene}: blit {blit:.2} ms over nothing"
     ));
 }

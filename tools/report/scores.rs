@@ -81,14 +81,8 @@ fn truth(scene: BuiltIn, size: UVec2, fine: u32) -> Truth {
 
 /// Scores of every detector in every scene.
 pub fn score(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&[
-        "scene", "detector", "truth", "found", "true", "right", "drawn", "wrong", "pixels",
-    ]);
-    let size = if run.quick {
-        UVec2::new(160, 90)
-    } else {
-        UVec2::new(480, 270)
-    };
+    let mut table = Table::new("scene,detector,truth,found,true,right,drawn,wrong,pixels");
+    let size = run.size([160, 90], [480, 270]);
     let scenes = run.some(1, SCENES);
     for &scene in &scenes {
         let truth = truth(scene, size, FINE);
@@ -131,12 +125,8 @@ pub fn score(run: &Run) -> Result<(), String> {
 
 /// How many small parts the lines of each scene fall into.
 fn whole(run: &Run, scenes: &[BuiltIn]) -> Result<(), String> {
-    let mut table = Table::new(&["scene", "fragments", "line"]);
-    let size = if run.quick {
-        UVec2::new(160, 90)
-    } else {
-        UVec2::new(960, 540)
-    };
+    let mut table = Table::new("scene,fragments,line");
+    let size = run.size([160, 90], [960, 540]);
     let thin = Outlines {
         width: 1.0,
         ink_budget: 1.0,

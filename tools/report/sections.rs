@@ -1,8 +1,8 @@
 //! The sections of the report: what each measures, and the question that it answers.
 
 use crate::{
-    Run, encodings, flicker, growth, ink, ladder, lines, machine, many_objects, meadow, models,
-    page, parts, peers, ranges, soak, stability, steps, straight, toon,
+    Run, flicker, growth, ink, ladder, lines, machine, many_objects, models, page, parts, peers,
+    ranges, soak, stability, straight, toon,
 };
 
 /// A part of the report that is measured by itself.
@@ -34,23 +34,17 @@ const fn section(
     }
 }
 
-/// The heading of three sections.
+/// The heading of two sections.
 const WHOLE: &str = "Whole and steady lines";
 
 /// All sections, in the order in which they are measured.
-pub const SECTIONS: [Section; 23] = [
+pub const SECTIONS: [Section; 19] = [
     MACHINE,
     section(
         "ranges",
         ranges::measure,
-        "How exact is the visible range, and would a cheaper search do?",
+        "What does finding the visible range take?",
         "The range",
-    ),
-    section(
-        "encodings",
-        encodings::measure,
-        "Could depth be stored in fewer bits?",
-        "Stored depth",
     ),
     section(
         "lines",
@@ -65,21 +59,9 @@ pub const SECTIONS: [Section; 23] = [
         "Lines of models",
     ),
     section(
-        "steps",
-        steps::measure,
-        "Would another setting leave fewer fragments?",
-        "One step changed at a time",
-    ),
-    section(
         "dashes",
         ink::dashes,
         "Do outlines of turning models break into dashes?",
-        WHOLE,
-    ),
-    section(
-        "dash-steps",
-        ink::dash_steps,
-        "Would another setting leave fewer dashes?",
         WHOLE,
     ),
     section(
@@ -87,12 +69,6 @@ pub const SECTIONS: [Section; 23] = [
         ink::memory,
         "Do lines hold still under temporal anti-aliasing?",
         WHOLE,
-    ),
-    section(
-        "meadow",
-        meadow::measure,
-        "How much of a meadow do lines cover?",
-        "Ink of a meadow",
     ),
     section(
         "straight",
@@ -115,7 +91,7 @@ pub const SECTIONS: [Section; 23] = [
     section(
         "ladder",
         ladder::measure,
-        "What does each style cost, an idle plugin, and a prepass? What is left out?",
+        "What does each style cost, and an idle plugin? What is left out?",
         "3. What is left out",
     ),
     section(

@@ -61,7 +61,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
 fn header(sample: &Sample) -> Table {
     let mut names = vec!["frame", "resident KiB", "errors", "styled"];
     names.extend(sample.resources.iter().map(|(name, _)| *name));
-    Table::new(&names)
+    Table::new(&names.join(","))
 }
 
 fn push(table: &mut Table, sample: &Sample) {

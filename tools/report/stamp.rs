@@ -35,7 +35,7 @@ impl Stamp {
         let mut table = if path.exists() {
             Table::load(&path)?
         } else {
-            Table::new(&["section", "date", "commit", "seconds"])
+            Table::new("section,date,commit,seconds")
         };
         table.rows.retain(|row| row[0] != section);
         let seconds = format!("{seconds:.0}");

@@ -111,7 +111,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             ..OrthographicProjection::default_3d()
         }),
     ));
-    let mut table = Table::new(&["width", "slope", "mean", "most", "uneven", "away"]);
+    let mut table = Table::new("width,slope,mean,most,uneven,away");
     let stride = if run.quick { 16 } else { 1 };
     for slope in slopes().step_by(stride) {
         let (mesh, starts) = walls(slope, size);

@@ -9,9 +9,10 @@ pub struct Table {
 }
 
 impl Table {
-    pub fn new(header: &[&str]) -> Self {
+    /// `header`: the names of the columns, as in the file.
+    pub fn new(header: &str) -> Self {
         Self {
-            header: header.iter().map(|h| (*h).to_owned()).collect(),
+            header: header.split(',').map(str::to_owned).collect(),
             rows: Vec::new(),
         }
     }
@@ -90,6 +91,16 @@ impl Table {
             }
         }
         found
+    }
+
+    /// The different cells of a column, in order of first appearance.
+    pub fn values(&self, name: &str) -> Vec<String> {
+        self.distinct(&self.matching(&[]), name)
+    }
+
+    /// The sum of a column in some rows.
+    pub fn sum(&self, rows: &[&Vec<String>], name: &str) -> f64 {
+        self.numbers(rows, name).iter().sum()
     }
 
     pub fn numbers(&self, rows: &[&Vec<String>], name: &str) -> Vec<f64> {

@@ -72,85 +72,61 @@ fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> 
 
 /// The materials that are compared: `None` is the standard material.
 fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> {
-    let with = |ramp| ToonLight {
-        ramp: Some(ramp),
-        ..default()
+    let light = |change: fn(&mut ToonLight)| {
+        let mut light = ToonLight::default();
+        change(&mut light);
+        Some(light)
     };
-    let in_mode = |mode| Ramp {
-        mode,
-        ..Ramp::default()
+    let with = |ramp| {
+        let ramp = Some(ramp);
+        Some(ToonLight { ramp, ..default() })
+    };
+    let ramp = |change: fn(&mut Ramp)| {
+        let mut ramp = Ramp::default();
+        change(&mut ramp);
+        with(ramp)
     };
     let tones = |count: u8| {
         let stop = |k| {
             let part = f32::from(k) / f32::from(count);
             RampStop::new(part, Color::linear_rgb(part, part, part))
         };
-        Ramp::new((0..count).map(stop))
+        with(Ramp::new((0..count).map(stop)))
+    };
+    let by_depth = |ramp: &mut Ramp| ramp.detail = Some(RampDetail::default());
+    let by_range = |ramp: &mut Ramp| {
+        let axis = DetailAxis::VisibleRange;
+        ramp.detail = Some(RampDetail { axis, ..default() });
+    };
+    let smoothed = |light: &mut ToonLight| {
+        let shape = ProxyShape::Smoothed { rounds: 8 };
+        light.proxy = Some(ShadingProxy { shape, ..default() });
+    };
+    let window = |light: &mut ToonLight| {
+        let shape = HighlightShape::Window;
+        light.stylized_highlight = Some(StylizedHighlight { shape, ..default() });
     };
     let mut all = vec![
         ("standard material", None),
-        ("no ramp", Some(ToonLight::default())),
-        ("no ramp; no highlights", {
-            let highlight = 0.0;
-            Some(ToonLight {
-                highlight,
-                ..default()
-            })
-        }),
-        ("default ramp", Some(with(Ramp::default()))),
-        ("PerLight", Some(with(in_mode(RampMode::PerLight)))),
-        ("Brightest", Some(with(in_mode(RampMode::Brightest)))),
-        ("LightFraction; 4 stops", Some(with(tones(4)))),
-        ("LightFraction; 8 stops", Some(with(tones(8)))),
-        ("default ramp; a second one by depth", {
-            let ramp = Ramp {
-                detail: Some(RampDetail::default()),
-                ..Ramp::default()
-            };
-            Some(with(ramp))
-        }),
-        ("default ramp; a second one by the visible range", {
-            let detail = RampDetail {
-                axis: DetailAxis::VisibleRange,
-                ..default()
-            };
-            let ramp = Ramp {
-                detail: Some(detail),
-                ..Ramp::default()
-            };
-            Some(with(ramp))
-        }),
-        ("no ramp; smoothed normals", {
-            let form = ShadingProxy {
-                shape: ProxyShape::Smoothed { rounds: 8 },
-                ..default()
-            };
-            Some(ToonLight {
-                proxy: Some(form),
-                ..default()
-            })
-        }),
-        ("no ramp; a window as highlight", {
-            let stylized_highlight = StylizedHighlight {
-                shape: HighlightShape::Window,
-                ..default()
-            };
-            Some(ToonLight {
-                stylized_highlight: Some(stylized_highlight),
-                ..default()
-            })
-        }),
-        ("no ramp; a rim", {
-            let rim = Some(Rim::default());
-            Some(ToonLight { rim, ..default() })
-        }),
-        ("no ramp; hatching", {
-            let hatching = Some(Hatching::default());
-            Some(ToonLight {
-                hatching,
-                ..default()
-            })
-        }),
+        ("no ramp", light(|_| ())),
+        ("no ramp; no highlights", light(|l| l.highlight = 0.0)),
+        ("default ramp", ramp(|_| ())),
+        ("PerLight", ramp(|r| r.mode = RampMode::PerLight)),
+        ("Brightest", ramp(|r| r.mode = RampMode::Brightest)),
+        ("LightFraction; 4 stops", tones(4)),
+        ("LightFraction; 8 stops", tones(8)),
+        ("default ramp; a second one by depth", ramp(by_depth)),
+        (
+            "default ramp; a second one by the visible range",
+            ramp(by_range),
+        ),
+        ("no ramp; smoothed normals", light(smoothed)),
+        ("no ramp; a window as highlight", light(window)),
+        ("no ramp; a rim", light(|l| l.rim = Some(Rim::default()))),
+        (
+            "no ramp; hatching",
+            light(|l| l.hatching = Some(Hatching::default())),
+        ),
     ];
     all.extend(mapped(images));
     all.push(("standard material again", None));
@@ -170,19 +146,13 @@ fn set_light(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
-        UVec2::new(100, 70)
-    } else {
-        UVec2::new(400, 280)
-    };
-    let mut times = Table::new(&["scene", "variant", "width", "height", "round", "main"]);
+    let size = run.size([100, 70], [400, 280]);
+    let mut times = Table::new("scene,variant,width,height,round,main");
     for scene in run.some(1, [BuiltIn::Theatre, BuiltIn::Teapot]) {
         let mut rig = Rig::new(Some(scene), size);
-        let camera = rig.camera;
+        let (camera, meshes) = (rig.camera, rig.meshes());
         let world = rig.headless.app.world_mut();
         world.entity_mut(camera).insert(DepthPrepass);
-        let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-        let meshes: Vec<Entity> = meshes.iter(world).collect();
         let variants = variants(&mut world.resource_mut::<Assets<Image>>());
         let variants = run.some(5, variants);
         // Round 0 compiles the variants, and is not counted.

@@ -17,11 +17,10 @@ pub enum Dock {
 impl Dock {
     pub const ALL: &[Self] = &[Self::Left, Self::Right, Self::Floating];
 
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> String {
         match self {
-            Self::Left => "Left",
-            Self::Right => "Right",
-            Self::Floating => "Window",
+            Self::Floating => "Window".into(),
+            side => format!("{side:?}"),
         }
     }
 }
@@ -50,16 +49,8 @@ impl Tab {
         Self::Photo,
     ];
 
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Style => "Style",
-            Self::Object => "Object",
-            Self::Presets => "Presets",
-            Self::Files => "Files",
-            Self::Views => "Views",
-            Self::Cost => "Cost",
-            Self::Photo => "Photo",
-        }
+    pub fn name(self) -> String {
+        format!("{self:?}")
     }
 }
 

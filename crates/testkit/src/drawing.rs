@@ -31,7 +31,7 @@ const FILL: &str = "
 ";
 
 /// A pass that draws over all of a target whose content is cleared.
-pub fn draw(
+fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
     group: &wgpu::BindGroup,

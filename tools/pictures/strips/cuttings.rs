@@ -6,7 +6,7 @@ use bevy::math::UVec2;
 use image::{RgbaImage, imageops};
 
 use super::{GAP, SIZE};
-use crate::{save, sheet::grid};
+use crate::{save, sheet::in_rows};
 
 /// A part of a frame: the strip, which of its frames, and the top left corner of the part.
 type Cutting = (&'static str, usize, [u32; 2]);
@@ -125,12 +125,9 @@ impl Figures {
             };
             let parts: Option<Vec<RgbaImage>> = figure.cuttings.iter().map(cut).collect();
             let Some(parts) = parts else { continue };
-            let rows: Vec<Vec<&RgbaImage>> = parts
-                .chunks(figure.columns)
-                .map(|row| row.iter().collect())
-                .collect();
             let out = folder.join(format!("figure-{}.png", figure.name));
-            save(&grid(&rows, figure.part, GAP), &out)?;
+            let picture = in_rows(&parts, figure.columns, figure.part, GAP);
+            save(&picture, &out)?;
         }
         Ok(())
     }

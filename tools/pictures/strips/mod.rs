@@ -12,9 +12,12 @@ use bevy_comics::{
     lines::{CreaseSource, Creases, EdgeStyle, LineBoil, LineColor, LineWeight},
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
-use image::{RgbaImage, imageops};
+use image::RgbaImage;
 
-use crate::{save, sheet::grid};
+use crate::{
+    save,
+    sheet::{enlarged, in_rows},
+};
 use cuttings::Figures;
 
 const SIZE: UVec2 = UVec2::new(720, 405);
@@ -295,14 +298,6 @@ fn frames(strip: &Strip) -> Vec<RgbaImage> {
     shown
 }
 
-/// The middle of a picture, its pixels `zoom` times as large.
-fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
-    let part = SIZE / zoom;
-    let [x, y] = ((SIZE - part) / 2).to_array();
-    let middle = imageops::crop_imm(picture, x, y, part.x, part.y).to_image();
-    imageops::resize(&middle, SIZE.x, SIZE.y, imageops::FilterType::Nearest)
-}
-
 /// One picture for each capability: six frames of 36, in two rows. `names`: of the strips that are
 /// drawn; none: all. Writes the figures of the documents too, of which all strips are drawn.
 pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
@@ -324,9 +319,8 @@ pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
             continue;
         }
         let frames = frames(&strip);
-        let rows: Vec<Vec<&RgbaImage>> = frames.chunks(3).map(|row| row.iter().collect()).collect();
         let out = folder.join(format!("{}.png", strip.name));
-        save(&grid(&rows, SIZE, GAP), &out)?;
+        save(&in_rows(&frames, 3, SIZE, GAP), &out)?;
         figures.add(strip.name, &frames);
     }
     figures.write(folder)

@@ -12,6 +12,8 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::{forest, specimens::Specimen, studio::Studio};
 
+use crate::toon::matt;
+
 /// The camera draws with temporal anti-aliasing.
 pub fn jitter(studio: &mut Studio) {
     let world = studio.headless.app.world_mut();
@@ -92,21 +94,15 @@ pub fn fog(studio: &mut Studio) {
 pub fn glass(studio: &mut Studio) {
     let (eye, target) = (studio.vantage.eye, studio.vantage.target);
     let world = studio.headless.app.world_mut();
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(Sphere::new(0.5));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgba(0.5, 0.75, 0.95, 0.6),
-            alpha_mode: AlphaMode::Blend,
-            ..default()
-        });
+    let mesh = Mesh3d(world.add_asset(Sphere::new(0.5)));
+    let glass = StandardMaterial::from_color(Color::srgba(0.5, 0.75, 0.95, 0.6));
+    let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(glass));
     let middle = target.lerp(eye, 0.3);
     let size = 0.25 * eye.distance(target);
     let side = (eye - target).cross(Vec3::Y).normalize_or(Vec3::X) * 0.6 * size;
     for (i, place) in [middle - side, middle + side].into_iter().enumerate() {
         let at = Transform::from_translation(place).with_scale(Vec3::splat(size));
-        let ball = (Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), at);
-        let mut ball = world.spawn(ball);
+        let mut ball = world.spawn((mesh.clone(), material.clone(), at));
         if i == 0 {
             ball.insert(DepthWrite::default());
         }
@@ -147,15 +143,9 @@ pub fn widths(studio: &mut Studio) {
 fn put(studio: &mut Studio, specimen: Specimen, at: Transform) -> Vec<Entity> {
     let world = studio.headless.app.world_mut();
     let add = |(mesh, color): (Mesh, Color)| {
-        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let material = materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness: 0.9,
-            ..default()
-        });
-        let part = (Mesh3d(mesh), MeshMaterial3d(material), at);
-        world.spawn(part).id()
+        let mesh = Mesh3d(world.add_asset(mesh));
+        let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(matt(color)));
+        world.spawn((mesh, material, at)).id()
     };
     specimen.parts().into_iter().map(add).collect()
 }
@@ -200,25 +190,15 @@ pub fn trees(studio: &mut Studio) {
     hide(studio);
     let world = studio.headless.app.world_mut();
     let meadow = Plane3d::default().mesh().size(4000.0, 4000.0).build();
-    let meadow = world.resource_mut::<Assets<Mesh>>().add(meadow);
-    let grass = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgb_u8(0x8d, 0xb2, 0x4f),
-            perceptual_roughness: 0.9,
-            ..default()
-        });
-    world.spawn((Mesh3d(meadow), MeshMaterial3d(grass)));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            perceptual_roughness: 0.9,
-            ..default()
-        });
+    let meadow = Mesh3d(world.add_asset(meadow));
+    let grass = matt(Color::srgb_u8(0x8d, 0xb2, 0x4f));
+    let grass = MeshMaterial3d(world.add_asset::<StandardMaterial>(grass));
+    world.spawn((meadow, grass));
+    let material = MeshMaterial3d(world.add_asset::<StandardMaterial>(matt(Color::WHITE)));
     for (mesh, places) in forest::forest() {
-        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        let mesh = Mesh3d(world.add_asset(mesh));
         for at in places {
-            world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), at));
+            world.spawn((mesh.clone(), material.clone(), at));
         }
     }
     let (at, fov) = forest::view();

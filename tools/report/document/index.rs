@@ -57,8 +57,8 @@ fn runs(stamps: &Table) -> String {
             seconds / 60.0
         ),
         _ => format!(
-            "The sections were not measured at one commit: the last column says when, at which commit, \
-             and in how many seconds ({days}). Where it is empty, that was not recorded."
+            "The sections were not measured at one commit: the last column says when, at which commit, and in how many \
+             seconds ({days}). Where it is empty, that was not recorded."
         ),
     };
     let alone: Vec<String> = alone.iter().map(|row| stamp_of(stamps, row)).collect();
@@ -154,11 +154,11 @@ pub fn index(
     } = Count::of(&all);
     let _ = writeln!(
         out,
-        "## Index\n\nOf {} limits, {met} are met and {missed} are missed, {nearly} of these by less than \
-         the noise of the measurement. Targets that were not measured: {unknown}. A target with two limits \
-         counts twice. [Targets](#targets) and [effects of the page](#effects-of-the-page) have them all. \
-         \"Worst\" is the largest miss, as a factor of its limit; \"nearest\" is the closest call where \
-         all are met. A blit is the time of copying the picture.\n",
+        "## Index\n\n\
+         Of {} limits, {met} are met and {missed} are missed, {nearly} of these by less than the noise of the measurement. \
+         Targets that were not measured: {unknown}. A target with two limits counts twice. [Targets](#targets) and \
+         [effects of the page](#effects-of-the-page) have them all. \"Worst\" is the largest miss, as a factor of its \
+         limit; \"nearest\" is the closest call where all are met. A blit is the time of copying the picture.\n",
         met + missed
     );
     let [head, rule] = if stamps.is_some() {
@@ -168,8 +168,7 @@ pub fn index(
     };
     let _ = writeln!(
         out,
-        "| section | question | met | missed | worst miss, or main figure |{head}\n\
-         |---|---|---|---|---|{rule}"
+        "| section | question | met | missed | worst miss, or main figure |{head}\n|---|---|---|---|---|{rule}"
     );
     for section in asked() {
         let own: Vec<&Target> = all

@@ -11,7 +11,7 @@ use crate::{load, table::Table};
 /// the column that counts them.
 fn dashes(table: &Table, [method, model, ends]: [&str; 3]) -> f64 {
     let rows = table.matching(&[("method", method), ("model", model)]);
-    let sum = |name| table.numbers(&rows, name).iter().sum::<f64>();
+    let sum = |name| table.sum(&rows, name);
     50.0 * sum(ends) / sum("true").max(1.0)
 }
 
@@ -27,18 +27,14 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_dashes")?;
     out.push_str(
-        "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
-         above and on two shapes while they turn: half of the ends of lines, where no other line begins. \
-         `cut` lines do not continue along weak edges (`hysteresis` 0, `min_length` 1); where a line continues \
-         along a weak edge that ends inside a surface, it has one more end than without, so a model may have more dashes with it. The next column has \
-         those of continued lines whose end is within 2 pixels of the end of a true line (the borders of \
-         pixels of the same view at four times the resolution, where the steps and folds of the truth are): \
-         folds that fade out, rims that end on a surface. The last one is what is found if true ends \
-         are moved by 11 and 9 pixels: by chance.\n\n\
+        "### Whole and steady lines\n\n\
+         Dashes for each 100 pixels of true line, on the models above and two shapes while they turn: half of the ends of \
+         lines. `cut` lines do not continue along weak edges (`hysteresis` 0, `min_length` 1); a line that continues along \
+         one that ends inside a surface has one end more. At true ends: within 2 pixels of the end of a true line, at four \
+         times the resolution. By chance: the same after true ends are moved by 11 and 9 pixels.\n\n\
          | | cut | continued | of these at true ends | by chance |\n|---|---|---|---|---|\n",
     );
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
-    for model in table.distinct(&all, "model") {
+    for model in table.values("model") {
         let cells = [
             ("cut", "ends"),
             ("continued", "ends"),
@@ -55,11 +51,10 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         });
         let _ = writeln!(out, "| {model} | {} |", cells.join(" | "));
     }
-    dash_steps(out, folder)?;
     let table = load(folder, "ink_memory")?;
     out.push_str(
-        "\nA still view under the engine's temporal anti-aliasing, of a scene that is white except for its lines: pixels that change by more than two codes \
-         from frame to frame, and the time of a whole frame.\n\n\
+        "\nA still, white scene with lines under the engine's temporal anti-aliasing: pixels that change by more than two \
+         codes from frame to frame, and the time of a frame.\n\n\
          | | | changed pixels | ms |\n|---|---|---|---|\n",
     );
     for row in &table.rows {
@@ -73,59 +68,6 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push('\n');
-    meadow(out, folder)
-}
-
-/// What the lines of presets cover of a meadow.
-fn meadow(out: &mut String, folder: &Path) -> Result<(), String> {
-    out.push_str("### Ink of a meadow\n\n");
-    if !folder.join("meadow_ink.csv").exists() {
-        out.push_str("Not measured yet: `report --only meadow`.\n\n");
-        return Ok(());
-    }
-    out.push_str(
-        "The fraction of the meadow of `mountains` that the lines of each preset cover, drawn in black on white, \
-         without the rest of the preset: the mean, and that of the area of 32x32 pixels that has most. Faithful lines \
-         have no budget.\n\n| | budget | mean | most | mean without a budget | most |\n|---|---|---|---|---|---|\n",
-    );
-    let table = load(folder, "meadow_ink")?;
-    for row in &table.rows {
-        let budget = match (table.cell(row, "form"), table.cell(row, "budget")) {
-            ("faithful", _) => "none: faithful",
-            (_, "1") => "none",
-            (_, budget) => budget,
-        };
-        let [mean, most, free, most_free] =
-            ["mean", "most", "mean_free", "most_free"].map(|column| table.number(row, column));
-        let preset = table.cell(row, "preset");
-        let _ = writeln!(
-            out,
-            "| {preset} | {budget} | {mean:.2} | {most:.2} | {free:.2} | {most_free:.2} |"
-        );
-    }
-    out.push('\n');
-    Ok(())
-}
-
-/// The organic model, with one setting changed at a time.
-fn dash_steps(out: &mut String, folder: &Path) -> Result<(), String> {
-    if !folder.join("ink_dash_steps.csv").exists() {
-        out.push_str(
-            "\nOne setting changed at a time: not measured yet, `report --only dash-steps`.\n",
-        );
-        return Ok(());
-    }
-    let table = load(folder, "ink_dash_steps")?;
-    out.push_str(
-        "\nThe organic model with one setting changed at a time, from the continued lines:\n\n| changed | dashes | of these at true ends | by chance |\n|---|---|---|---|\n",
-    );
-    for row in &table.rows {
-        let length = table.number(row, "true").max(1.0);
-        let [all, ends, chance] = ["ends", "true_ends", "by_chance"]
-            .map(|column| 50.0 * table.number(row, column) / length);
-        let name = table.cell(row, "method");
-        let _ = writeln!(out, "| {name} | {all:.2} | {ends:.2} | {chance:.2} |");
-    }
     Ok(())
 }
 
@@ -145,7 +87,7 @@ fn over_accepted(table: &Table, rows: &[&Vec<String>]) -> f64 {
 /// The widths of lines that the section draws; the second is the default, and of an even number of
 /// pixels: the middles of such lines are at their edges.
 fn straight_widths(table: &Table) -> Vec<String> {
-    table.distinct(&table.rows.iter().collect::<Vec<_>>(), "width")
+    table.values("width")
 }
 
 /// The text on straight lines.
@@ -157,14 +99,11 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_straight")?;
     out.push_str(
-        "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, \
-         over 200 columns. Width: the ink of a column times the cosine of the edge. Difference: \
-         of the mean width of a line from the width that was asked for, the largest of all lines. \
-         Area: the same difference, of the mean width of all lines of a slope, in percent of the width \
-         that was asked for. Unevenness: the standard deviation of the width from column to \
-         column.\n\n\
-         | px wide | difference, px | area, % | unevenness, px: mean | largest |\n\
-         |---|---|---|---|---|\n",
+        "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, over 200 columns. Width: \
+         the ink of a column times the cosine of the edge. Difference: the largest of the mean width of a line from the \
+         width that was asked for. Area: the same of all lines of a slope, in percent. Unevenness: the standard deviation \
+         of the width from column to column.\n\n\
+         | px wide | difference, px | area, % | unevenness, px: mean | largest |\n|---|---|---|---|---|\n",
     );
     for width in straight_widths(&table) {
         let rows = table.matching(&[("width", &width)]);
@@ -179,10 +118,9 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean \
-         square over all columns and offsets. Accepted: a tenth more than what is aimed at for \
-         the slope, or than what one run of steps can tell (`crates/testkit/src/straight_edges.rs`). \
-         The largest of the slopes of each row, and the largest part of what is accepted.\n\n\
+        "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean square over all columns and \
+         offsets, the largest of the slopes of a row. Part: of what is accepted, a tenth more than what is aimed at, or \
+         than one run of steps can tell (`crates/testkit/src/straight_edges.rs`).\n\n\
          | slopes | px | part |\n|---|---|---|\n",
     );
     let rows = table.matching(&[("width", "2")]);
@@ -255,8 +193,7 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         return straight_targets(folder);
     }
     let table = load(folder, "ink_dashes")?;
-    let rows: Vec<&Vec<String>> = table.rows.iter().collect();
-    let shapes = table.distinct(&rows, "model");
+    let shapes = table.values("model");
     let mut all: Vec<Target> = shapes
         .into_iter()
         .map(|shape| {

@@ -11,7 +11,6 @@ mod parts;
 mod precision;
 mod scenes;
 mod soak;
-mod steps;
 mod target;
 mod targets;
 mod toon;
@@ -30,9 +29,9 @@ pub fn render(folder: &Path) -> Result<String, String> {
     let stamps = index::stamps(folder)?;
     let body = body(folder)?;
     let mut out = String::from(
-        "# Error against run time\n\nWritten by `cargo run --example report`. Every \
-         number that was measured comes from the CSV files in this folder. A test writes this text again \
-         from them, and checks some numbers with other code.\n\n",
+        "# Error against run time\n\n\
+         Written by `cargo run --example report`. All measured numbers come from the CSV files in this folder: a test \
+         makes this text from them again, and checks some with other code.\n\n",
     );
     let measured = index::measured(&machine, stamps.as_ref());
     if !measured.is_empty() {
@@ -44,15 +43,12 @@ pub fn render(folder: &Path) -> Result<String, String> {
         let _ = writeln!(out, "| {} | {} |", row[0], row[1]);
     }
     out.push_str(
-        "\n`peers` is a program of its own, whose dependencies are built without optimisation \
-         (`opt-level` 0; all else is built with 1): it compares crates with each other, and its times \
-         do not compare with those of other sections.\n\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
-         with it, less that of the frame without it; the tables give the median of all rounds. \
-         Ratios are to a copying pass of the same size in the same round (\"blits\"): the median, \
-         and in some tables the 10th and 90th percentile of the rounds. \"blit again\" is the \
-         same copying pass a second time: its difference from 1 is noise. Ratios are different \
-         on other kinds of adapter; nothing here was measured on a GPU unless the table above \
-         says so.\n\n",
+        "\n`peers` is a program of its own, whose dependencies are built without optimisation (`opt-level` 0): it compares \
+         crates with each other, and its times do not compare with those of other sections. The profile of these is in \
+         docs/benchmarks.md; until 26 November 2026, all of them were built with `opt-level` 1.\n\n\
+         Variants are timed in turn (A B C A B C): the median of all rounds, less the frame without a style. Blits are \
+         ratios to a pass that copies the picture in the same round: the median, and the 10th and 90th percentile. The \
+         difference of \"blit again\" from 1 is noise. Ratios are different on other kinds of adapter.\n\n",
     );
     noise(&mut out, folder)?;
     out.push_str(&body);
@@ -76,8 +72,8 @@ fn noise(out: &mut String, folder: &Path) -> Result<(), String> {
     let again = again.map_or(f64::NAN, |cost| cost.ratio[1]);
     let _ = writeln!(
         out,
-        "How quiet the machine was: in the rounds of section 3, a copy took {:.1} ms (10 % to 90 % of \
-         the rounds: {:.1} to {:.1} ms), and \"blit again\" {again:.2} blits.\n",
+        "How quiet the machine was: in the rounds of section 3, a copy took {:.1} ms (10 % to 90 % of the rounds: {:.1} to \
+         {:.1} ms), and \"blit again\" {again:.2} blits.\n",
         median(&copies),
         quantile(&copies, 0.1),
         quantile(&copies, 0.9)
@@ -91,9 +87,7 @@ fn body(folder: &Path) -> Result<String, String> {
     targets::targets(&mut out, folder)?;
     out.push_str("## 1. Error against run time\n\n");
     precision::ranges(&mut out, folder)?;
-    precision::encodings(&mut out, folder)?;
     precision::lines(&mut out, folder)?;
-    steps::steps(&mut out, folder)?;
     page::page(&mut out, folder)?;
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;

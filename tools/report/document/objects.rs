@@ -39,19 +39,17 @@ fn growth(times: &Table, counts: &[String], variant: &str) -> f64 {
 
 pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "many_objects_times")?;
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let counts = times.distinct(&all, "objects");
-    let variants = times.distinct(&all, "variant");
+    let counts = times.values("objects");
     out.push_str(
-        "### Many objects\n\nWhole frames of 64x64 pixels, in milliseconds, with cubes that share \
-         a mesh and a material. The last column is the exponent of growth, after the time of a \
-         frame with one object is subtracted.\n\n| frame |",
+        "### Many objects\n\n\
+         Frames of 64x64 pixels, in milliseconds, with cubes that share a mesh and a material. Exponent: of growth, less \
+         the time of a frame with one object.\n\n| frame |",
     );
     for count in &counts {
         let _ = write!(out, " {count} |");
     }
     let _ = writeln!(out, " exponent |\n|---|{}---|", "---|".repeat(counts.len()));
-    for variant in &variants {
+    for variant in &times.values("variant") {
         let _ = write!(out, "| {variant} |");
         for count in &counts {
             let whole = of(&times, count, variant, "whole");
@@ -67,13 +65,11 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         };
     }
     out.push_str(
-        "\nFrames with outlines as multiples of those with the engine's depth and normal prepass, \
-         and of those in which the engine draws that prepass twice, as a pass of object ids has to \
-         at least; and the microseconds of the CPU in which object ids are queued, batched and bound, \
-         where nothing changes, where one object in a hundred moves, and where the camera turns, so \
-         that objects enter and leave.\n\n\
-         | objects | frame, outlines / prepasses | outlines / prepasses drawn twice | ids, still, us \
-         | ids, 1 % move, us | ids, the camera turns, us |\n|---|---|---|---|---|---|\n",
+        "\nFrames with outlines as multiples of those with the engine's depth and normal prepass, and of those that draw \
+         it twice, as object ids have to at least; and microseconds of the CPU in which ids are queued, batched and bound: \
+         where nothing changes, one object in a hundred moves, and the camera turns.\n\n\
+         | objects | frame, outlines / prepasses | outlines / prepasses drawn twice | ids, still, us | ids, 1 % move, us | \
+         ids, the camera turns, us |\n|---|---|---|---|---|---|\n",
     );
     for count in &counts {
         let whole = |variant| of(&times, count, variant, "whole");
@@ -100,21 +96,20 @@ pub fn many_objects(out: &mut String, folder: &Path) -> Result<(), String> {
         "\nToon materials of 1000 equal toon scenes: {most:.0}.\n"
     );
     let peers = load(folder, "peer_object_times")?;
-    let rows: Vec<_> = peers.rows.iter().collect();
-    if rows.is_empty() {
+    if peers.rows.is_empty() {
         out.push_str("Other crates were not measured on these scenes.\n\n");
         return Ok(());
     }
     out.push_str(
-        "Other crates on the same scenes, each in an app of its own, in turns: whole frames in \
-         milliseconds, and as multiples of those with the engine's prepasses.\n\n| frame |",
+        "Other crates on the same scenes, in apps of their own, in turns: frames in milliseconds, and as multiples of \
+         those with the engine's prepasses.\n\n| frame |",
     );
-    let counts = peers.distinct(&rows, "objects");
+    let counts = peers.values("objects");
     for count in &counts {
         let _ = write!(out, " {count} |");
     }
     let _ = writeln!(out, "\n|---|{}", "---|".repeat(counts.len()));
-    for variant in peers.distinct(&rows, "variant") {
+    for variant in peers.values("variant") {
         let _ = write!(out, "| {variant} |");
         for count in &counts {
             let [whole, least] =

@@ -23,18 +23,15 @@ fn largest(screens: &Table, shape: &str, fine: bool, column: &str) -> f64 {
 
 pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "page_screens")?;
-    let all: Vec<&Vec<String>> = table.rows.iter().collect();
     out.push_str(
-        "### The printed page\n\nErrors of single plates, in double precision; every pixel of the \
-         shader equals this within rounding (`tests/gpu/halftone.rs`). Tone: the largest difference of \
-         the mean of a flat area from its tone, of 11 tones at four angles. Jump: the largest \
-         change of a pixel when the tone changes by 1/1024. Moire: the part of the power of a \
-         print less its picture that is below half of the screen's frequency, the larger one of a \
-         gradient and of rings that become finer. The largest of periods of 4 pixels and more; at \
-         3 pixels the tone alone:\n\n\
+        "### The printed page\n\n\
+         Errors of single plates in double precision, which the shader equals within rounding (`tests/gpu/halftone.rs`), \
+         the largest of periods of 4 pixels and more. Tone: of the mean of a flat area, of 11 tones at four angles. Jump: \
+         the change of a pixel when the tone changes by 1/1024. Moire: the part of the power of a print less its picture \
+         that is below half of the screen's frequency, of a gradient and of rings that become finer:\n\n\
          | screen | tone | jump | moire | tone at 3 px |\n|---|---|---|---|---|\n",
     );
-    for shape in table.distinct(&all, "what") {
+    for shape in table.values("what") {
         let of = |column| largest(&table, &shape, false, column);
         let _ = writeln!(
             out,
@@ -48,13 +45,11 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let colors = load(folder, "page_colors")?;
     out.push_str(
-        "\nThe largest difference of the mean light of a print with four inks from that of \
-         independent screens, of 20 colours, three greys and three lights each, by the fraction of \
-         grey that is printed in black. Ideal inks: independent screens have the colour itself. Grey \
-         inks: cyan and magenta take some of all light, so that it counts whether screens are \
-         independent. In phase: grey inks again, with black's screen not shifted against the others. \
-         Beats: the slow part of the light of a grey gradient or of grey rings, as above, with the \
-         default inks and all four plates.\n\n\
+        "\nThe largest difference of the mean light of a print with four inks from that of independent screens, of 20 \
+         colours, three greys and three lights each, by the fraction of grey that is printed in black. Grey inks: cyan and \
+         magenta take some of all light, so that it counts whether screens are independent. In phase: the same, with \
+         black's screen not shifted. Beats: the slow part of the light of a grey gradient or of grey rings, with the \
+         default inks and all plates.\n\n\
          | black | ideal inks | grey inks | in phase | beats |\n|---|---|---|---|---|\n",
     );
     for row in &colors.rows {
@@ -71,8 +66,8 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let harmonies = load(folder, "page_harmonies")?;
     out.push_str(
-        "\nThe largest change of the lightness in OKLab (0 to 1) by a `ColorHarmony`, of 32 x 32 x 32 \
-         colours at three places in the depth map, with the strongest change of hue:\n\n\
+        "\nThe largest change of the lightness in OKLab (0 to 1) by a `ColorHarmony`, of 32 x 32 x 32 colours at three \
+         places in the depth map, with the strongest change of hue:\n\n\
          | mode | change |\n|---|---|\n",
     );
     for row in &harmonies.rows {
@@ -91,10 +86,9 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
 /// What the effects fetch.
 fn work(out: &mut String, table: &Table) {
     out.push_str(
-        "\nTexels and bytes that effects of the page fetch per pixel, in all of their passes \
-         together, counted in the shaders on the teapot at 160x90. A place between texels counts as \
-         four of them, and a repeated load counts each time, though compilers merge those of \
-         grains.\n\n| | texels, mean (most) | bytes |\n|---|---|---|\n",
+        "\nTexels and bytes that all passes of an effect fetch per pixel, counted in the shaders on the teapot at 160x90. \
+         A place between texels counts as four, and a repeated load each time, though compilers merge those of grains.\n\n\
+         | | texels, mean (most) | bytes |\n|---|---|---|\n",
     );
     for row in &table.rows {
         let cell = |name| table.cell(row, name);
@@ -225,12 +219,10 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
     let (effects, single) = effects_of(folder)?;
     let _ = writeln!(
         out,
-        "### Effects of the page\n\nErrors beside times. Blits: the effect alone, with all of its \
-         passes. Over one pass: less the time of `{ONE_PASS}`, an effect of one pass ({single:.2} \
-         blits). Target: at most {MOST_BLITS}; what is as near to it as half the distance between the \
-         10th and the 90th percentile of the rounds is within the noise. \"Strokes along edges\" are \
-         for photographs, and are not meant to be fast. An effect without an error has no figure of its \
-         own here: tests compare it with its reference (`tests/gpu`).\n\n\
+        "### Effects of the page\n\n\
+         Blits: all passes of the effect. Over one pass: less the time of `{ONE_PASS}`, an effect of one pass ({single:.2} \
+         blits). Target: at most {MOST_BLITS}; the noise is half the distance between the 10th and the 90th percentile of \
+         the rounds. \"Strokes along edges\" are for photographs, and are not meant to be fast.\n\n\
          | effect | error | blits | over one pass | target of the time |\n|---|---|---|---|---|"
     );
     for effect in &effects {
@@ -249,8 +241,8 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\ndocs/internals/measurements.md has what was tried for those that are missed, under \
-         \"Effects of the page\".\n\n",
+        "\ndocs/internals/measurements.md has what was tried for those that are missed, under \"Effects of the page\".\n\n\
+         ",
     );
     Ok(())
 }
@@ -258,8 +250,7 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
 /// The tones of fine screens.
 pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
     let screens = load(folder, "page_screens")?;
-    let rows: Vec<&Vec<String>> = screens.rows.iter().collect();
-    let shapes = screens.distinct(&rows, "what");
+    let shapes = screens.values("what");
     let target = |shape: String| {
         let exact = ["Round", "Line", "Diamond"].contains(&shape.as_str());
         let what = format!("mean tone of {} screens at 3 px", shape.to_lowercase());

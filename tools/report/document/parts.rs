@@ -26,8 +26,8 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "part_times")?;
     let _ = writeln!(
         out,
-        "### Single parts\n\nTimes of this crate's passes on the teapot at {}. Outlines of which one thing \
-         differs from the default:\n",
+        "### Single parts\n\n\
+         Times of this crate's passes on the teapot at {}. Outlines of which one thing differs from the default:\n",
         size(&times)
     );
     // The layer of highlighted objects is drawn after the engine's prepass.
@@ -40,8 +40,8 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
         ),
         (
             "marks",
-            "All meshes marked with `SelectionOutline` or `XRayOutline`, on a camera without a \
-             style. The times include the prepass of the marked meshes:\n\n",
+            "All meshes marked with `SelectionOutline` or `XRayOutline`, on a camera without a style. The times include \
+             the prepass of the marked meshes:\n\n",
             &LAPS_OF_PARTS,
         ),
     ] {
@@ -54,16 +54,13 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
 
 /// The costs of what parts of the scene ask for, each from a scene of its own.
 fn scene_parts(out: &mut String, times: &Table) {
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let sections = times.distinct(&all, "section");
+    let sections = times.values("section");
     out.push_str(
-        "What parts of the scene ask for, each on a scene of its own, which is the teapot if no \
-         other is named. The times include the prepass, which a camera without a style does not \
-         have; that of temporal anti-aliasing, and its own pass, are left out, since a camera \
-         without a style has them. Over the base: what the same style costs more than on the same scene without the part, \
-         timed in turn with it; the median, the least and the most of the rounds. The base of the memory of lines and of the ink budget is the same without it. \
-         Under temporal anti-aliasing, a copy is lost in the noise of the passes around it (-). Differences below 10 ms may be noise. \
-         The glass is the mesh with most vertices:\n\n\
+        "What parts of the scene ask for, on the teapot if no other is named. The times include the prepass, but not \
+         temporal anti-aliasing, since a camera without a style has it. Over the base: over the same style on the scene \
+         without the part, or without the memory of lines or the ink budget, timed in turn; the median, the least and the \
+         most of the rounds. Under temporal anti-aliasing, a copy is lost in the noise (-). Differences below 10 ms may be \
+         noise. The glass is the mesh with most vertices:\n\n\
          | | ms | blits | over the base, ms | least to most |\n|---|---|---|---|---|\n",
     );
     for section in sections.iter().filter(|name| name.starts_with("part: ")) {
@@ -134,9 +131,8 @@ fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> Op
 /// The part of a scene that adds most to the cost of a style.
 pub fn figure(folder: &Path) -> Option<String> {
     let times = load(folder, "scene_part_times").ok()?;
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
     let mut most: Option<(String, f64)> = None;
-    for section in times.distinct(&all, "section") {
+    for section in times.values("section") {
         let Some(name) = section.strip_prefix("part: ") else {
             continue;
         };

@@ -11,13 +11,12 @@ use crate::{
 pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "stability")?;
     out.push_str(
-        "## 2. Stability on stiff and extreme cases\n\nThe depth map (Eq. 4) on the adapter, \
-         compared with the exact quotient of the raw depths. The textbook's form computes \
-         distances first, then `(z - min) / (max - min)`; this crate's form is a quotient of \
-         differences of raw depth. The condition is the factor by which the map \
-         multiplies a relative error of a depth. `ulp` and `codes` are the largest errors, in \
-         units in the last place and in 8-bit codes; `not finite` is the number of such results. The floor that hides noise (`DepthMap::floor`) is off. A single depth has \
-         no quotient: its map is 0 by definition. Subnormal depths count as sky.\n\n\
+        "## 2. Stability on stiff and extreme cases\n\n\
+         The depth map (Eq. 4) on the adapter beside the exact quotient. The textbook's form computes distances, then `(z \
+         - min) / (max - min)`; this crate's is a quotient of differences of raw depth. Condition: the factor by which the \
+         map multiplies a relative error of a depth. The largest errors in units in the last place and in 8-bit codes, and \
+         the number of results that are not finite. `DepthMap::floor`, which hides noise, is off. A single depth has no \
+         quotient: its map is 0. Subnormal depths count as sky.\n\n\
          | case | condition | textbook, ulp | codes | not finite | this crate, ulp | codes | not finite |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
@@ -45,9 +44,8 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nPictures on an HDR camera, with the preset `graphic-novel`, the default comic, outlines \
-         and tone bands together, and once more with a sketch: the number of pixels of both that \
-         are not finite before and after this crate's pass.\n\n\
+        "\nPixels that are not finite before and after this crate's pass, on an HDR camera with the preset \
+         `graphic-novel`, the default comic, outlines and tone bands, and once more with a sketch.\n\n\
          | case | before | after |\n|---|---|---|\n",
     );
     for row in table.matching(&[("kind", "picture")]) {
@@ -57,20 +55,6 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
             table.cell(row, "case"),
             table.cell(row, "textbook_wild"),
             table.cell(row, "wild")
-        );
-    }
-    let moved = load(folder, "moved")?;
-    out.push_str(
-        "\nThe FLIP difference between a scene and the same scene scaled together with its near \
-         plane, or moved together with its camera. The engine's positions are single floats, \
-         which have steps of 0.06 at 1e6:\n\n| | FLIP |\n|---|---|\n",
-    );
-    for row in &moved.rows {
-        let _ = writeln!(
-            out,
-            "| {} | {:.4} |",
-            moved.cell(row, "case"),
-            moved.number(row, "flip")
         );
     }
     out.push('\n');
@@ -83,15 +67,14 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     let costs = costs(&times, "ladder", "teapot", &OWN);
     let _ = writeln!(
         out,
-        "## 3. What is left out\n\nStyles from none to everything, and for each: the number of \
-         passes that ran, of nine, the engine's prepasses included; the bindings of the fused \
-         pass; the texels and bytes that it fetches per pixel, counted in the shader on the \
-         teapot at 160x90; the texels that the passes of the lines fetch per pixel of the \
-         picture, to search blocks, find cracks, search columns and draw ink, and their bytes; \
-         the time of this crate's passes at {}, also in percent of `everything`. In a larger \
-         picture lines cover less of it: finding and drawing fetch less.\n\n\
-         | style | passes | bindings | texels, mean (most) | bytes | texels of lines | bytes | ms | blits | of everything |\n\
-         |---|---|---|---|---|---|---|---|---|---|",
+        "## 3. What is left out\n\n\
+         Styles from none to everything: the passes that ran, of nine, the engine's prepasses included; the bindings of \
+         the fused pass, and the texels and bytes that it fetches per pixel, counted on the teapot at 160x90; the texels \
+         that the passes of lines fetch to search blocks, find cracks, search columns and draw ink, and their bytes; the \
+         time of this crate's passes at {}, also in percent of `everything`. In larger pictures, finding and drawing fetch \
+         less.\n\n\
+         | style | passes | bindings | texels, mean (most) | bytes | texels of lines | bytes | ms | blits | of everything \
+         |\n|---|---|---|---|---|---|---|---|---|---|",
         size(&times)
     );
     let whole = costs
@@ -130,13 +113,12 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let idle = load(folder, "idle_times")?;
     out.push_str(
-        "\n### An idle plugin\n\nWhole frames of three apps, in turn: one without the plugin, \
-         one with the plugin and no style, and another one without the plugin, which shows the \
+        "\n### An idle plugin\n\n\
+         Frames of three apps, in turn: without the plugin, with it and no style, and without it again, which shows the \
          noise.\n\n\
          | | ms, median | 10 % to 90 % |\n|---|---|---|\n",
     );
-    let all: Vec<&Vec<String>> = idle.rows.iter().collect();
-    for app in idle.distinct(&all, "app") {
+    for app in idle.values("app") {
         let ms = idle.numbers(&idle.matching(&[("app", &app)]), "milliseconds");
         let _ = writeln!(
             out,
@@ -146,41 +128,7 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
             quantile(&ms, 0.9)
         );
     }
-    let prepass = load(folder, "prepass_times")?;
-    out.push_str(
-        "\n### Depth from a prepass, or from the main pass?\n\nThe time of the engine's prepass \
-         and main pass together, with and without a depth prepass. An effect that reads no more \
-         than depth could read the depth of the main pass instead.\n\n\
-         | scene | without, ms | with, ms | with / without |\n|---|---|---|---|\n",
-    );
-    let all: Vec<&Vec<String>> = prepass.rows.iter().collect();
-    let (mut won, mut lost) = (0, 0);
-    for scene in prepass.distinct(&all, "scene") {
-        let of = |with| {
-            let rows = prepass.matching(&[("scene", &scene), ("prepass", with)]);
-            prepass.numbers(&rows, "milliseconds")
-        };
-        let (without, with) = (of("no"), of("yes"));
-        let ratios: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a / b).collect();
-        if median(&ratios) < 1.0 {
-            won += 1;
-        } else {
-            lost += 1;
-        }
-        let _ = writeln!(
-            out,
-            "| {scene} | {:.1} | {:.1} | {:.2} |",
-            median(&without),
-            median(&with),
-            median(&ratios)
-        );
-    }
-    let _ = writeln!(
-        out,
-        "\nThe prepass saves more time than it takes in {won} of {} scenes, because the main pass \
-         then shades no pixel that is hidden.\n",
-        won + lost
-    );
+    out.push('\n');
     Ok(())
 }
 
@@ -201,8 +149,9 @@ fn fewer_passes(out: &mut String, times: &Table) {
 pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "growth_times")?;
     out.push_str(
-        "## 4. Cost and its growth\n\nThe time of this crate's passes (range, lines, fused pass) \
-         for the default comic (desaturation, colorization, contours).\n\n",
+        "## 4. Cost and its growth\n\n\
+         The time of this crate's passes (range, lines, fused pass) for the default comic (desaturation, colorization, \
+         contours).\n\n",
     );
     for (section, title) in [("pixels", "pixels"), ("vertices", "vertices, at 512x512")] {
         let (p, points) = growth_exponent(&times, section, GROWING);
@@ -232,8 +181,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
         }
     }
     out.push_str(
-        "The engine's prepass, which the style needs, grows with the vertices, as the main pass \
-         does:\n\n| vertices | prepass, ms | main pass with it, ms | main pass without a style, ms |\n|---|---|---|---|\n",
+        "The engine's prepass, which the style needs, grows with the vertices, as the main pass does:\n\n\
+         | vertices | prepass, ms | main pass with it, ms | main pass without a style, ms |\n|---|---|---|---|\n",
     );
     let rows = times.matching(&[("section", "vertices")]);
     for scene in times.distinct(&rows, "scene") {
@@ -254,8 +203,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nSeveral cameras with the style, 256x256 each:\n\n| cameras | this crate's passes of \
-         all, ms | all passes of all, ms |\n|---|---|---|\n",
+        "\nSeveral cameras with the style, 256x256 each:\n\n\
+         | cameras | this crate's passes of all, ms | all passes of all, ms |\n|---|---|---|\n",
     );
     let rows = times.matching(&[("section", "cameras")]);
     for scene in times.distinct(&rows, "scene") {
@@ -274,22 +223,6 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
             .collect();
         let _ = writeln!(out, "| {scene} | {cost:.2} | {:.2} |", median(&whole));
     }
-    let paper = load(folder, "paper_times")?;
-    let fps = |app: &str| {
-        let rows = paper.matching(&[("app", app)]);
-        1000.0 / median(&paper.numbers(&rows, "milliseconds"))
-    };
-    let (without, with) = (fps("without the model"), fps("with the model"));
-    let _ = writeln!(
-        out,
-        "\n### The paper's experiment\n\nWhole frames of one million vertices at 512x512, without \
-         and with the paper's model (here the default comic), prepass included.\n\n\
-         | | without, frames/s | with, frames/s | with / without |\n|---|---|---|---|\n\
-         | [CS], GPU unnamed, 2010 | 512 | 260 | {:.2} |\n\
-         | here | {without:.2} | {with:.2} | {:.2} |\n",
-        260.0 / 512.0,
-        with / without
-    );
-    out.push_str("![Cost against pixels](growth.svg)\n\n");
+    out.push_str("\n![Cost against pixels](growth.svg)\n\n");
     Ok(())
 }

@@ -12,12 +12,12 @@ use crate::{
 
 /// What is left out of the run, and why.
 const EXCEPTIONS: &str = "Two things that grow are not this crate's, and are left out:\n\n\
-    - Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each, six \
-    with a prepass, with this crate or without. The run removes them after each frame (`forget_gone_views` in \
-    `crates/testkit/src/soak.rs`).\n\
-    - The first camera wears one look throughout, since lavapipe compiles shaders again for each change of looks \
-    and keeps the memory. `SOAK=looks` changes nothing else, and an empty `SOAK` everything; tests change looks \
-    in a short run that counts the resources of the GPU.\n\n";
+     - Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for \
+     each, six with a prepass, with this crate or without. The run removes them after each frame \
+     (`forget_gone_views` in `crates/testkit/src/soak.rs`).\n- The first camera keeps one look, since \
+     lavapipe compiles shaders again for each change of looks and keeps the memory. `SOAK=looks` \
+     changes nothing else, and an empty `SOAK` everything; a short test changes looks and counts the \
+     resources of the GPU.\n\n";
 
 /// How much the memory grows, and how often the renderer fails.
 pub fn figure(folder: &Path) -> Option<String> {
@@ -43,10 +43,10 @@ pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
     let last = table.rows.last().ok_or("soak.csv is empty")?;
     let _ = writeln!(
         out,
-        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera with a \
-         look changes its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the toon \
-         material and loses it, and a style file breaks and is mended; samples and HDR change from one to the \
-         next. Errors of the renderer: {}.\n",
+        "## 7. A long run\n\n\
+         {} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera with a look changes its size 60 times, \
+         another one comes and goes, 20 objects come and go, the scene takes the toon material and loses it, and a style \
+         file breaks and is mended; samples and HDR change from one to the next. Errors of the renderer: {}.\n",
         table.cell(last, "frame"),
         table.cell(last, "errors"),
     );
@@ -77,8 +77,8 @@ fn numbers(out: &mut String, table: &Table) {
     if let Some(growth) = growth(table) {
         let _ = writeln!(
             out,
-            "Memory grew by {growth:.2} % over the second half. `report --only soak` fails from \
-             {MOST_GROWTH:.0} % on, if there is more of any resource at the end, and after any error.\n"
+            "Memory grew by {growth:.2} % over the second half. `report --only soak` fails from {MOST_GROWTH:.0} % on, if \
+             there is more of any resource at the end, and after any error.\n"
         );
     }
 }

@@ -70,7 +70,7 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
 
 /// Fragments per 100 pixels of line, in rows of a table of scores.
 fn fragments(table: &Table, rows: &[&Vec<String>]) -> f64 {
-    let sum = |name| table.numbers(rows, name).iter().sum::<f64>();
+    let sum = |name| table.sum(rows, name);
     100.0 * sum("fragments") / sum("line").max(1.0)
 }
 
@@ -118,8 +118,7 @@ fn quality(folder: &Path) -> Result<Vec<Target>, String> {
         all.push(fragments_target("lines", scene, fragments(&whole, &[row])));
     }
     let models = load(folder, "model_scores")?;
-    let rows: Vec<&Vec<String>> = models.rows.iter().collect();
-    for model in models.distinct(&rows, "model") {
+    for model in models.values("model") {
         for distance in ["close", "distant"] {
             let rows = models.matching(&[("model", &model), ("distance", distance)]);
             if !rows.is_empty() {
@@ -156,16 +155,13 @@ const HEAD: &str = "| what | target | measured | verdict |\n|---|---|---|---|\n"
 pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
     let _ = writeln!(
         out,
-        "## Targets\n\nTimes are those of the crate's own passes on the teapot, without the \
-         engine's prepasses. The limits of times are meant for a CPU adapter. Outlines are \
-         timed with their default ink budget, and scored without it; lines under temporal \
-         anti-aliasing cost more (\"Single parts\"). Ratios of outlines scatter by half between \
-         rounds, and are larger where a copy is faster: \"within the noise\" is what is met or \
-         missed by less than {NOISE} blits. Fragments and the time of outlines have two limits: \
-         one for finding lines, and one for lines that are also linked and smooth, as these \
-         are.\n\n\
-         ### Missed\n\nThose of the effects of the page are in their own table, below. Sorted by \
-         how many times over its limit a value is.\n"
+        "## Targets\n\n\
+         Times are those of the crate's own passes on the teapot; their limits are meant for a CPU adapter. Outlines are \
+         timed with their default ink budget, and scored without it. Ratios of outlines scatter by half between rounds: \
+         \"within the noise\" is what is met or missed by less than {NOISE} blits. Fragments and the time of outlines have \
+         two limits: for finding lines, and for lines that are also linked and smooth, as these are.\n\n\
+         ### Missed\n\n\
+         Sorted by how many times over its limit a value is. Effects of the page have a table of their own, below.\n"
     );
     let is_missed = |target: &Target| target.count().missed > 0;
     let (mut missed, met): (Vec<Target>, Vec<Target>) =
@@ -179,21 +175,15 @@ pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
     let _ = writeln!(
         out,
         "\nWhy targets are missed:\n\n\
-         * Times: on a CPU adapter a blit is little more than a copy of memory, while every \
-         effect is computed in software for every pixel, with both sides of every branch. The \
-         largest part of the time of outlines is reading the depth, normal and id of every \
-         pixel (`walk.wgsl`). The same holds for the ratio to the other crate, which reads few \
-         texels and looks for less.\n\
-         * Growth: an exponent below 0.95 means that large pictures cost less than in proportion. \
-         A copy has {of_copy:.2}.\n\
-         * False pixels of outlines are mostly faint steps and folds, which the truth does not \
-         count: see \"wrong pixels\" below.\n\
-         * Fragments and dashes are left where a fold is about as sharp as the threshold, and \
-         where a wire is narrower than a pixel.\n\
-         * Straight lines: docs/internals/measurements.md says under that name what differs, and \
-         how much.\n\n\
-         docs/internals/measurements.md has what was tried and what it gained, under \"Targets of \
-         the line engine\".\n\n### Met\n"
+         * Times: on a CPU adapter a blit is little more than a copy of memory, while effects are computed in software, \
+         with both sides of every branch. Outlines spend most time on reading depth, normal and id of every pixel \
+         (`walk.wgsl`); the other crate reads few texels, and looks for less.\n* Growth: an exponent below 0.95 means that \
+         large pictures cost less than in proportion. A copy has {of_copy:.2}.\n* False pixels of outlines are mostly \
+         faint steps and folds, which the truth does not count: see \"wrong pixels\" below.\n* Fragments and dashes are \
+         left where a fold is about as sharp as the threshold, and where a wire is narrower than a pixel.\n* Straight \
+         lines: docs/internals/measurements.md says under that name what differs, and how much.\n\n\
+         docs/internals/measurements.md has what was tried and what it gained, under \"Targets of the line engine\".\n\n\
+         ### Met\n"
     );
     out.push_str(HEAD);
     for target in &met {

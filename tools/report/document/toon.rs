@@ -14,10 +14,6 @@ fn least(times: &Table, scene: &str, variant: &str) -> f64 {
     (times.numbers(&rows, "main").into_iter()).fold(f64::INFINITY, f64::min)
 }
 
-fn scenes(times: &Table) -> Vec<String> {
-    times.distinct(&times.rows.iter().collect::<Vec<_>>(), "scene")
-}
-
 /// The main pass with the default ramp, compared with that of the standard material.
 pub fn targets(folder: &Path) -> Vec<Target> {
     let Ok(times) = load(folder, "toon_times") else {
@@ -28,7 +24,7 @@ pub fn targets(folder: &Path) -> Vec<Target> {
         let what = format!("{scene}: main pass with the toon material / with the standard one");
         Target::at_most("toon", what, 1.1, Some(ratio))
     };
-    scenes(&times).into_iter().map(target).collect()
+    times.values("scene").into_iter().map(target).collect()
 }
 
 pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
@@ -38,20 +34,19 @@ pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
     };
     let _ = writeln!(
         out,
-        "### Toon material\n\nThe main pass of a scene at {}, with all of its meshes in one \
-         material after the other. The least time of all rounds, and its ratio to that of the \
-         standard material. The theatre has a sun, a point light and a spot light, the teapot a \
-         sun; all have shadow maps:\n",
+        "### Toon material\n\n\
+         The main pass of a scene at {}, with all of its meshes in one material after the other: the least time of all \
+         rounds, and its ratio to that of the standard material. The theatre has a sun, a point light and a spot light, \
+         the teapot a sun, all with shadow maps:\n",
         size(&times)
     );
-    let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let scenes = scenes(&times);
+    let scenes = times.values("scene");
     let mut head = String::from("| |");
     for scene in &scenes {
         let _ = write!(head, " {scene}, ms | ratio |");
     }
     let _ = writeln!(out, "{head}\n|---|{}", "---|---|".repeat(scenes.len()));
-    for variant in times.distinct(&all, "variant") {
+    for variant in times.values("variant") {
         let _ = write!(out, "| {variant} |");
         for scene in &scenes {
             let time = least(&times, scene, &variant);

@@ -68,30 +68,20 @@ impl LightOwner {
         }
     }
 
-    /// Sets the lighting; whether the place is still there.
-    pub fn set(&self, world: &mut World, light: ToonLight) -> bool {
+    /// Sets the lighting; `None` if the place is gone.
+    pub fn set(&self, world: &mut World, light: ToonLight) -> Option<()> {
         match self {
             Self::Shading(shading) => {
-                let shadings = world.get_resource_mut::<Assets<ToonShading>>();
-                let Some(mut shadings) = shadings else {
-                    return false;
-                };
-                let shading = shadings.get_mut(shading);
-                shading.map(|mut shading| shading.light = light).is_some()
+                let mut shadings = world.get_resource_mut::<Assets<ToonShading>>()?;
+                shadings.get_mut(shading)?.light = light;
             }
-            Self::Scene(root) => {
-                let scene = world.get_mut::<ToonScene>(*root);
-                scene.map(|mut scene| scene.light = light).is_some()
-            }
+            Self::Scene(root) => world.get_mut::<ToonScene>(*root)?.light = light,
             Self::Material(material) => {
-                let materials = world.get_resource_mut::<Assets<ToonMaterial>>();
-                let Some(mut materials) = materials else {
-                    return false;
-                };
-                let material = materials.get_mut(material);
-                (material.map(|mut material| material.extension = light)).is_some()
+                let mut materials = world.get_resource_mut::<Assets<ToonMaterial>>()?;
+                materials.get_mut(material)?.extension = light;
             }
         }
+        Some(())
     }
 
     /// The number of meshes whose lighting is set here.

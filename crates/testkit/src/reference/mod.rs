@@ -43,7 +43,6 @@ pub mod octahedral;
 pub mod overshoot;
 pub mod paint;
 pub mod paper;
-pub mod ping_pong;
 pub mod planes;
 pub mod pressure;
 pub mod ramp_map;

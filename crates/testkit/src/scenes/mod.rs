@@ -48,9 +48,6 @@ impl BuiltIn {
         Self::Hall,
     ];
 
-    /// Those that the report measures.
-    pub const MEASURED: [Self; 4] = [Self::Mountains, Self::Teapot, Self::Theatre, Self::Village];
-
     pub fn name(self) -> &'static str {
         match self {
             Self::Mountains => "mountains",
