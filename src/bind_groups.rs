@@ -6,13 +6,9 @@ use std::{
 };
 
 use bevy::{
-    app::App,
-    ecs::{
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Res, SystemParam},
-    },
+    ecs::system::SystemParam,
     platform::{collections::HashTable, hash::FixedHasher},
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderSystems,
         render_resource::{

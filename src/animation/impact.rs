@@ -1,22 +1,9 @@
 //! Impact frames: for a few drawings a camera shows two tones and focus lines.
 
 use bevy::{
-    camera::{Camera, NormalizedRenderTarget, RenderTarget},
-    color::Color,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        event::EntityEvent,
-        lifecycle::Remove,
-        observer::On,
-        query::With,
-        reflect::ReflectResource,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
-    },
-    log::{debug, warn_once},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    time::{Real, Time},
+    camera::{NormalizedRenderTarget, RenderTarget},
+    ecs::system::SystemParam,
+    prelude::*,
     window::PrimaryWindow,
 };
 

@@ -7,24 +7,11 @@
 //! it.
 
 use bevy::{
-    app::SubApp,
-    camera::Camera,
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut, Tick},
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
-        query::QueryState,
-        reflect::ReflectComponent,
-        world::{EntityRef, World},
-    },
-    light::{DirectionalLight, PointLight, SpotLight},
-    math::{Affine3A, DVec3, Vec3A},
-    mesh::{Mesh3d, skinning::SkinnedMesh},
+    ecs::{change_detection::Tick, entity::EntityHashMap},
+    math::{Affine3A, DVec3},
+    mesh::skinning::SkinnedMesh,
     pbr::PreviousGlobalTransform,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    time::Time,
-    transform::components::GlobalTransform,
+    prelude::*,
 };
 
 use crate::{

@@ -1,16 +1,9 @@
 //! Copies the plans of active cameras to the render world.
 
 use bevy::{
-    camera::{Camera, Camera3d, Projection},
-    ecs::{
-        entity::{Entity, EntityHashSet},
-        query::With,
-        system::{Commands, EntityCommands, Local, Query, Res},
-    },
-    math::Vec3,
+    ecs::entity::EntityHashSet,
+    prelude::*,
     render::{Extract, sync_world::RenderEntity},
-    time::{Real, Time},
-    transform::components::GlobalTransform,
 };
 
 use super::{CameraPlan, fog::Fogs, light::Lights};

@@ -3,14 +3,7 @@
 
 mod mask;
 
-use bevy::{
-    app::{App, Plugin},
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-    shader::load_shader_library,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType, shader::load_shader_library};
 
 use crate::settings::{FieldRange, clamp_or_default};
 

@@ -3,9 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    ecs::resource::Resource,
-    math::UVec2,
+    asset::load_embedded_asset,
+    prelude::*,
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
@@ -15,7 +14,6 @@ use bevy::{
         },
         renderer::RenderDevice,
     },
-    shader::Shader,
 };
 
 use super::{

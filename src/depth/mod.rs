@@ -20,10 +20,7 @@ pub(crate) mod smoothing;
 pub(crate) mod surfaces;
 pub(crate) mod view;
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent, resource::Resource},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use axis::DepthAxis;

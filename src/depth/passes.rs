@@ -1,10 +1,8 @@
 //! The pipelines that compute a view's visible range.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        system::{Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         render_resource::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,

@@ -1,18 +1,12 @@
 //! Adds the depth service to an app.
 
 use bevy::{
-    app::{App, Plugin, PreUpdate},
-    asset::{AssetServer, embedded_asset},
+    asset::embedded_asset,
     core_pipeline::{
         FullscreenShader,
         schedule::{Core3d, Core3dSystems},
     },
-    ecs::{
-        entity::Entity,
-        query::With,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res},
-    },
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},

@@ -6,14 +6,8 @@ use std::sync::{
 };
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        query::{With, Without},
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::Vec4Swizzles,
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
         render_resource::{Buffer, BufferUsages, DynamicUniformBuffer},
         renderer::{RenderDevice, RenderQueue},

@@ -1,12 +1,8 @@
 //! Turns the plan of a view into requests for the lines of its highlighted objects.
 
 use bevy::{
-    camera::CompositingSpace,
-    ecs::{
-        entity::Entity,
-        hierarchy::ChildOf,
-        system::{Commands, Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},

@@ -2,9 +2,8 @@
 //! effect, and writes the picture once.
 
 use bevy::{
-    asset::{AssetServer, Handle},
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
-    ecs::{resource::Resource, system::Res},
+    prelude::*,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -15,7 +14,6 @@ use bevy::{
         renderer::{RenderContext, ViewQuery},
         view::{ViewDepthTexture, ViewTarget},
     },
-    shader::Shader,
 };
 
 use super::{

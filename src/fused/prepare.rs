@@ -4,12 +4,7 @@ use crate::effect::{EffectContext, encode};
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
+    prelude::*,
     render::{
         render_resource::{Buffer, BufferUsages, CachedRenderPipelineId},
         renderer::{RenderDevice, RenderQueue},

@@ -4,11 +4,8 @@ use crate::effect::{AffectedArea, AnyEffect, EffectContext, Needs};
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        system::{Commands, Res, ResMut, SystemParam},
-    },
-    math::{Vec2, Vec4Swizzles},
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},

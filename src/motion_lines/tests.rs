@@ -1,13 +1,6 @@
 //! Points of meshes, and trails.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::{
-        Affine3A, Quat, Vec3, Vec3A,
-        primitives::{Cuboid, Sphere},
-    },
-    mesh::{Mesh, Meshable, PrimitiveTopology},
-};
+use bevy::{asset::RenderAssetUsages, math::Affine3A, mesh::PrimitiveTopology, prelude::*};
 
 use super::{
     ribbon::{strength, taper},

@@ -1,10 +1,6 @@
 //! Blending between two values of a setting.
 
-use bevy::{
-    color::{Color, LinearRgba, Mix, Oklaba},
-    math::{FloatExt, Vec2, Vec3},
-    reflect::{PartialReflect, attributes::CustomAttributes},
-};
+use bevy::{prelude::*, reflect::attributes::CustomAttributes};
 
 use super::{
     BlendField, FieldRange,

@@ -1,14 +1,6 @@
 //! Styles over a camera's own style.
 
-use bevy::{
-    asset::AssetId,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        system::EntityCommands,
-        world::{EntityRef, EntityWorldMut},
-    },
-};
+use bevy::prelude::*;
 
 use super::ComicStyle;
 use crate::{

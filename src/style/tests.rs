@@ -3,21 +3,13 @@
 use std::any::TypeId;
 
 use bevy::{
-    app::App,
-    asset::{AssetPlugin, Assets},
-    camera::{
-        Camera3d,
-        visibility::{InheritedVisibility, RenderLayers},
-    },
-    ecs::{entity::Entity, template::FromTemplate},
-    math::Vec3,
-    prelude::{AppTypeRegistry, TaskPoolPlugin},
+    camera::visibility::RenderLayers,
+    prelude::*,
     reflect::{
         TypeRegistry,
         serde::{ReflectDeserializer, ReflectSerializer},
     },
     tasks::tick_global_task_pools_on_main_thread,
-    transform::components::GlobalTransform,
 };
 use serde::de::DeserializeSeed;
 
@@ -419,7 +411,7 @@ fn partial_styles_are_files_too() {
 }
 
 /// Loads until the camera has the style, or fails.
-fn load(app: &mut App, handle: &bevy::asset::Handle<ComicStyle>) -> ComicStyle {
+fn load(app: &mut App, handle: &Handle<ComicStyle>) -> ComicStyle {
     for _ in 0..1000 {
         app.update();
         tick_global_task_pools_on_main_thread();
@@ -438,7 +430,7 @@ fn every_preset_is_an_asset_that_a_template_can_name() {
     app.finish();
     app.cleanup();
     for preset in presets::ALL {
-        let assets = app.world().resource::<bevy::asset::AssetServer>().clone();
+        let assets = app.world().resource::<AssetServer>().clone();
         let handle = assets.load(preset.path());
         assert_eq!(load(&mut app, &handle), preset.style(), "{preset}");
     }
@@ -477,8 +469,8 @@ fn every_effect_and_style_serializes_by_reflection() {
 }
 
 fn assert_serializes(registry: &TypeRegistry, id: TypeId, name: &str) {
-    let write = registry.get_type_data::<bevy::reflect::ReflectSerialize>(id);
+    let write = registry.get_type_data::<ReflectSerialize>(id);
     assert!(write.is_some(), "{name} does not reflect Serialize");
-    let read = registry.get_type_data::<bevy::reflect::ReflectDeserialize>(id);
+    let read = registry.get_type_data::<ReflectDeserialize>(id);
     assert!(read.is_some(), "{name} does not reflect Deserialize");
 }

@@ -3,16 +3,10 @@
 use std::borrow::Cow;
 
 use bevy::{
-    asset::{Asset, AssetEvent, Assets, Handle},
-    ecs::{message::MessageReader, system::ResMut},
-    image::Image,
     material::OpaqueRendererMethod,
     mesh::MeshVertexBufferLayoutRef,
-    pbr::{
-        ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline,
-        StandardMaterial,
-    },
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
+    prelude::*,
     render::render_resource::{
         AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
     },

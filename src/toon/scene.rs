@@ -3,25 +3,9 @@
 mod copies;
 
 use bevy::{
-    app::App,
-    asset::{AssetEvent, Assets, Handle},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        entity::{Entity, EntityHashSet},
-        hierarchy::{ChildOf, Children},
-        lifecycle::{Insert, Remove, RemovedComponents},
-        message::MessageReader,
-        observer::On,
-        query::{Changed, Or, With, Without},
-        reflect::ReflectComponent,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
-        world::EntityRef,
-    },
-    pbr::{MeshMaterial3d, StandardMaterial},
+    ecs::{entity::EntityHashSet, system::SystemParam},
     platform::collections::{HashMap, HashSet},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
 };
 
 use super::{MaterialName, ToonLight, ToonMaterial, ToonShading, ToonShadingHandle, shading};

@@ -1,12 +1,8 @@
 //! Materials as files: the lighting of a toon material as an asset.
 
 use bevy::{
-    asset::{Asset, AssetEvent, AssetId, AssetLoader, AssetPath, Handle, LoadContext, io::Reader},
-    ecs::{component::Component, reflect::ReflectComponent, template::FromTemplate},
-    log::warn,
-    reflect::{
-        Reflect, ReflectDeserialize, ReflectSerialize, TypePath, std_traits::ReflectDefault,
-    },
+    asset::{AssetLoader, AssetPath, LoadContext, io::Reader},
+    prelude::*,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use thiserror::Error;

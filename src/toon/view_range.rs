@@ -5,19 +5,10 @@
 //! its range there between its prepass and its main pass, so the range is that of the frame itself.
 
 use bevy::{
-    app::App,
-    asset::{AssetEvent, Assets, Handle, RenderAssetUsages, uuid_handle},
+    asset::{RenderAssetUsages, uuid_handle},
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        message::MessageReader,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Query, Res, ResMut},
-    },
-    image::Image,
-    log::warn_once,
-    math::{Vec2, Vec3},
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
         Render, RenderApp,
         render_asset::RenderAssets,

@@ -2,11 +2,7 @@
 
 use std::time::Duration;
 
-use bevy::{
-    app::{App, Update},
-    math::UVec2,
-    window::{Window, WindowRef},
-};
+use bevy::window::WindowRef;
 
 use super::*;
 

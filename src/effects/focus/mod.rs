@@ -1,11 +1,6 @@
 //! Leaves what is nearer or farther than a distance out of focus.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec4Swizzles},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{

@@ -2,13 +2,7 @@
 
 mod kinds;
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 pub use kinds::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape};

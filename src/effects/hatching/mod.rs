@@ -4,13 +4,7 @@ mod kinds;
 
 use std::f32::consts::FRAC_PI_4;
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{IVec4, Mat3, Mat4, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 pub use kinds::{HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource};

@@ -2,10 +2,7 @@
 
 use std::fmt::Debug;
 
-use bevy::{
-    color::{Color, ColorToComponents, LinearRgba},
-    reflect::{PartialReflect, ReflectRef},
-};
+use bevy::{prelude::*, reflect::ReflectRef};
 
 use super::places::{Place, components, is_color, made, other_variants};
 use crate::{

@@ -1,9 +1,6 @@
 //! Clamps that do not follow from the range of a field alone, and expected values by hand.
 
-use bevy::{
-    color::Color,
-    math::{Vec2, Vec3},
-};
+use bevy::prelude::*;
 
 use super::non_finite::{Numbers, cases};
 use crate::{

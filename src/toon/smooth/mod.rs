@@ -3,17 +3,9 @@
 mod normals;
 
 use bevy::{
-    asset::{AssetEvent, AssetId, Assets},
-    ecs::{
-        message::MessageReader,
-        query::{Changed, Or, With},
-        resource::Resource,
-        system::{Query, Res, ResMut},
-    },
-    log::warn_once,
-    mesh::{Mesh, Mesh3d, VertexAttributeValues},
-    pbr::MeshMaterial3d,
+    mesh::VertexAttributeValues,
     platform::collections::{HashMap, HashSet},
+    prelude::*,
     tasks::{AsyncComputeTaskPool, Task, futures::check_ready},
 };
 
