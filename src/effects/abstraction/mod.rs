@@ -75,11 +75,7 @@ impl Default for Abstraction {
 impl Effect for Abstraction {
     const NAME: &'static str = "abstraction";
     const STAGE: EffectStage = EffectStage::Tone;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::abstraction",
-        source: include_str!("abstraction.wgsl"),
-        settings: Some("Abstraction"),
-    };
+    const SHADER: EffectShader = shader!("abstraction", "Abstraction");
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Abstraction",
         explanation: "Black: all detail. White: full abstraction.",

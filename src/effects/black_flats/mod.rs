@@ -69,11 +69,7 @@ impl BlackFlats {
 impl Effect for BlackFlats {
     const NAME: &'static str = "black_flats";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::black_flats",
-        source: include_str!("black_flats.wgsl"),
-        settings: Some("BlackFlats"),
-    };
+    const SHADER: EffectShader = shader!("black_flats", "BlackFlats");
     type Uniform = BlackFlatsUniform;
 
     fn strength(&self) -> f32 {
@@ -85,10 +81,8 @@ impl Effect for BlackFlats {
     }
 
     fn faded(self, fraction: f32) -> Self {
-        Self {
-            opacity: self.opacity * fraction,
-            ..self
-        }
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
     }
 
     fn needs(&self) -> Needs {

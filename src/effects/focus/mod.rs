@@ -109,11 +109,7 @@ impl Default for Focus {
 impl Effect for Focus {
     const NAME: &'static str = "focus";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::focus",
-        source: include_str!("focus.wgsl"),
-        settings: Some("Focus"),
-    };
+    const SHADER: EffectShader = shader!("focus", "Focus");
     const HALF_BOX: bool = true;
     const AUX_SCALAR: bool = true;
     type Uniform = FocusUniform;

@@ -139,21 +139,10 @@ impl Default for Halftone {
 impl Effect for Halftone {
     const NAME: &'static str = "halftone";
     const STAGE: EffectStage = EffectStage::Print;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::halftone",
-        source: include_str!("halftone.wgsl"),
-        settings: Some("Halftone"),
-    };
+    const SHADER: EffectShader = shader!("halftone", "Halftone");
     type Uniform = HalftoneUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();

@@ -149,21 +149,10 @@ impl Default for Hatching {
 impl Effect for Hatching {
     const NAME: &'static str = "hatching";
     const STAGE: EffectStage = EffectStage::Print;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::hatching",
-        source: include_str!("hatching.wgsl"),
-        settings: Some("Hatching"),
-    };
+    const SHADER: EffectShader = shader!("hatching", "Hatching");
     type Uniform = HatchingUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();

@@ -69,21 +69,10 @@ impl Default for Misregistration {
 impl Effect for Misregistration {
     const NAME: &'static str = "misregistration";
     const STAGE: EffectStage = EffectStage::Print;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::misregistration",
-        source: include_str!("misregistration.wgsl"),
-        settings: Some("Misregistration"),
-    };
+    const SHADER: EffectShader = shader!("misregistration", "Misregistration");
     type Uniform = MisregistrationUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::PICTURE

@@ -95,21 +95,10 @@ impl Default for SpeedLines {
 impl Effect for SpeedLines {
     const NAME: &'static str = "speed_lines";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::speed_lines",
-        source: include_str!("speed_lines.wgsl"),
-        settings: Some("SpeedLines"),
-    };
+    const SHADER: EffectShader = shader!("speed_lines", "SpeedLines");
     type Uniform = SpeedLinesUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("KIND", self.kind as u32);

@@ -53,34 +53,21 @@ impl Default for ToneBands {
 impl Effect for ToneBands {
     const NAME: &'static str = "tone_bands";
     const STAGE: EffectStage = EffectStage::Tone;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::tone_bands",
-        source: include_str!("tone_bands.wgsl"),
-        settings: Some("ToneBands"),
-    };
+    const SHADER: EffectShader = shader!("tone_bands", "ToneBands");
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Tone bands",
         explanation: "The lightness of the picture after banding.",
     });
     type Uniform = ToneBandsUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        Self {
-            amount: self.amount * fraction,
-            ..self
-        }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::LIGHTNESS_CHANGE
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.number("FAITHFUL", u32::from(self.equations.is_faithful()));
     }
 
     fn uniform(&self, view: &EffectContext) -> ToneBandsUniform {
@@ -88,14 +75,8 @@ impl Effect for ToneBands {
             levels: self.levels as f32,
             softness: self.softness * view.scale_factor,
             amount: self.amount,
-            faithful: u32::from(self.is_faithful()),
+            faithful: u32::from(self.equations.is_faithful()),
         }
-    }
-}
-
-impl ToneBands {
-    fn is_faithful(&self) -> bool {
-        self.equations == Equations::Faithful
     }
 }
 
