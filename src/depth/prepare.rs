@@ -16,7 +16,6 @@ use bevy::{
 };
 
 use super::{
-    borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
     frame::DepthProjection,
     passes::{RangePasses, Reduction},
@@ -28,6 +27,9 @@ use super::{
     view::RANGE_SIZE,
 };
 use crate::gpu::buffer;
+
+/// Bytes of `BorderState` in `borders.wgsl`.
+const BORDERS_SIZE: u64 = 16;
 
 /// On a view in the render world: its visible range. It stays on the view, with the
 /// state of its smoothing, as long as a range is requested.
@@ -42,7 +44,8 @@ pub(crate) struct ViewDepthRange {
     /// Textures of the ping-pong chain; empty if another reduction runs.
     pub chain: Vec<CachedTexture>,
     pub smoothing: Option<ViewSmoothing>,
-    pub borders: Option<ViewBorders>,
+    /// The state of the borders of depth layers.
+    pub borders: Option<Buffer>,
     /// The range of another view, which this one draws with.
     pub taken: Option<TakenRange>,
     /// Whether the passes of this frame were recorded.
@@ -211,11 +214,13 @@ impl ViewDepthRange {
         } else {
             self.smoothing = None;
         }
-        if passes.borders.is_none() {
-            self.borders = None;
-        } else if self.borders.is_none() {
-            self.borders = Some(ViewBorders::new(device));
-        }
+        self.borders = passes.borders.map(|_| {
+            let known = self.borders.take();
+            known.unwrap_or_else(|| {
+                let label = "comics_depth_borders";
+                buffer(device, label, BORDERS_SIZE, BufferUsages::STORAGE)
+            })
+        });
         self.chain = match passes.reduction {
             Some(Reduction::PingPong { .. }) => chain_textures(textures, device, request.rect.zw()),
             Some(Reduction::Compute { .. }) | None => Vec::new(),

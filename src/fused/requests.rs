@@ -291,7 +291,7 @@ impl Requests {
                 passes.middle,
                 passes.conversion,
             ];
-            reduction || later.into_iter().flatten().any(compute)
+            reduction || later.into_iter().flatten().any(|(_, id)| compute(id))
         });
         let lines = self.lines.as_ref();
         let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
