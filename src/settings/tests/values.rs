@@ -4,8 +4,7 @@ use bevy::prelude::*;
 
 use super::non_finite::{Numbers, cases};
 use crate::{
-    BlackFlats, Contours, DepthLayers, DepthMap, DepthMapping, Effect, IsoLines, Outlines,
-    SpeedLines, ToneBands,
+    BlackFlats, DepthLayers, DepthMap, DepthMapping, Effect, IsoLines, Outlines, SpeedLines,
     effects::DepthLayer,
     lines::{Creases, EdgeColor, EdgeStyle, LineColor, LineFog},
 };
@@ -13,33 +12,7 @@ use crate::{
 const NAN: f32 = f32::NAN;
 
 #[test]
-fn numbers_are_clamped_to_these_ranges() {
-    let contours = |threshold, width, softness| Contours {
-        threshold,
-        width,
-        softness,
-        ..Contours::default()
-    };
-    assert_eq!(
-        contours(-1.0, 99.0, 0.75).sanitized(),
-        contours(1e-6, 16.0, 0.75)
-    );
-    let bands = |levels, softness, amount| ToneBands {
-        levels,
-        softness,
-        amount,
-        ..ToneBands::default()
-    };
-    assert_eq!(bands(0, -1.0, 2.0).sanitized(), bands(2, 0.0, 1.0));
-    assert_eq!(bands(1_000_000, 99.0, 0.5).sanitized().levels, 8);
-    let counts = |min_length, gap_closing, hold_frames| Outlines {
-        min_length,
-        gap_closing,
-        hold_frames,
-        ..Outlines::default()
-    };
-    assert_eq!(counts(0, 9, 9).sanitized(), counts(1, 3, 8));
-    assert_eq!(counts(u32::MAX, 2, 5).sanitized(), counts(8, 2, 5));
+fn components_of_vectors_are_clamped_each() {
     let lines = SpeedLines {
         center: Vec2::new(-7.0, NAN),
         ..SpeedLines::default()
