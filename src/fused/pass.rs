@@ -2,7 +2,7 @@
 //! effect, and writes the picture once.
 
 use bevy::{
-    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
+    core_pipeline::FullscreenShader,
     prelude::*,
     render::{
         diagnostic::RecordDiagnostics,
@@ -12,7 +12,7 @@ use bevy::{
             SpecializedRenderPipeline, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
-        view::{ViewDepthTexture, ViewTarget},
+        view::ViewTarget,
     },
 };
 
@@ -20,17 +20,16 @@ use super::{
     blue_noise::BlueNoise,
     earlier_passes::{EarlierPasses, PassTextures, described},
     errors::ShaderErrors,
-    inputs::{Inputs, PassSampler, entries},
+    inputs::{Inputs, PassSampler, ViewInputs, entries},
     key::StylizeKey,
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
     bind_groups::Binder,
-    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     gpu::{attachment, entry},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
-    objects::{ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+    objects::ObjectStyleBuffer,
 };
 
 #[derive(Resource)]
@@ -68,7 +67,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.shader_defs(),
-                entry_point: Some(key.entry_point().into()),
+                entry_point: Some(key.draws.entry_point().into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
                     blend: overlay.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -93,15 +92,7 @@ pub(super) fn stylize<const PRINTS: bool>(
             &ViewFused,
             Option<&PassTextures>,
         ),
-        (
-            (
-                (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
-                Option<&ViewDepthTexture>,
-            ),
-            Option<&ViewDepthRange>,
-            Option<&ViewLines>,
-            (Option<&ViewObjectIds>, Option<&ObjectDepths>),
-        ),
+        ViewInputs<'_>,
     )>,
     (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<PassSampler>),
     blue_noise: Res<BlueNoise>,

@@ -208,7 +208,7 @@ impl ChosenArea {
             .collect();
         let saves = |request: &LineRequest| {
             let jumps = request.jumps.is_some() && !local.is_empty();
-            jumps || (without_lines && whole.reads_lines_anywhere())
+            jumps || (without_lines && whole.needs.contains(Needs::LINES_ANYWHERE))
         };
         let area = match (whole.can_overlay(plan, context), tiled) {
             (true, Some(_)) => DrawnArea::OverlaidTiles,
