@@ -17,7 +17,7 @@ use crate::{
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::EffectTarget,
-    fused::{Plan, ViewPlan},
+    fused::{Plan, ViewPlan, set_or_remove},
     objects::{DepthWanted, IdsWanted, ObjectStyles},
     origin::WorldOrigin,
 };
@@ -124,10 +124,7 @@ fn fade_levels(
         .filter(|_| plan.fades && plan.needs_depth())
         .map(|at| levels.fading(at.translation(), places))
         .filter(|fading| !fading.meshes.is_empty());
-    match fading {
-        Some(fading) => view.insert(fading),
-        None => view.remove::<FadingMeshes>(),
-    };
+    set_or_remove::<FadingMeshes>(view, fading);
 }
 
 /// The world position that effects point at.
@@ -144,18 +141,12 @@ fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writ
         layer: plan.marks,
         widths: plan.draws_widths(),
     };
-    if wanted.ids || wanted.layer {
-        view.insert(wanted);
-    } else {
-        view.remove::<IdsWanted>();
-    }
+    set_or_remove(view, (wanted.ids || wanted.layer).then_some(wanted));
     let can_write = plan.has_ids() && !plan.lacks.depth_copies;
-    if writes && can_write && plan.needs_depth() {
-        view.insert(DepthWanted {
-            camera,
-            normals: plan.needs_normals(),
-        });
-    } else {
-        view.remove::<DepthWanted>();
-    }
+    let writes = writes && can_write && plan.needs_depth();
+    let depth = DepthWanted {
+        camera,
+        normals: plan.needs_normals(),
+    };
+    set_or_remove(view, writes.then_some(depth));
 }

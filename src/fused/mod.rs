@@ -31,4 +31,5 @@ mod view_plan;
 pub(crate) use device::DeviceLacks;
 pub(crate) use plan::Plan;
 pub(crate) use plugin::FusedPlugin;
+pub(crate) use requests::set_or_remove;
 pub(crate) use view_plan::ViewPlan;

@@ -274,6 +274,14 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
     })
 }
 
+/// Puts components on a view, or removes them.
+pub(crate) fn set_or_remove<B: Bundle>(view: &mut EntityCommands, wanted: Option<B>) {
+    match wanted {
+        Some(wanted) => view.insert(wanted),
+        None => view.remove::<B>(),
+    };
+}
+
 impl Requests {
     /// Whether a pipeline is still compiling. A pipeline that failed is not: its
     /// pass does not run, and the log says why.
@@ -307,26 +315,11 @@ impl Requests {
     /// `layer`: the entity with the requests for the lines of highlighted objects.
     pub fn put(self, entity: Entity, layer: Option<Entity>, commands: &mut Commands) {
         let mut view = commands.entity(entity);
-        match self.range {
-            Some(range) => view.insert(range),
-            None => view.remove::<(RangeRequest, RangePasses)>(),
-        };
-        match self.lines {
-            Some(lines) => view.insert(lines),
-            None => view.remove::<(LineRequest, LinePasses)>(),
-        };
-        match self.ids {
-            Some(ids) => view.insert(ids),
-            None => view.remove::<IdRequest>(),
-        };
-        match self.places {
-            Some(places) => view.insert(places),
-            None => view.remove::<ObjectDepthRequest>(),
-        };
-        match self.fused {
-            Some(fused) => view.insert(fused),
-            None => view.remove::<FusedRequest>(),
-        };
+        set_or_remove(&mut view, self.range);
+        set_or_remove(&mut view, self.lines);
+        set_or_remove(&mut view, self.ids);
+        set_or_remove(&mut view, self.places);
+        set_or_remove(&mut view, self.fused);
         #[cfg(feature = "objects")]
         match self.marks {
             Some(marks) => marks.put(entity, layer, commands),
