@@ -181,8 +181,7 @@ fn copy_keys(encoder: &mut CommandEncoder, result: &CachedTexture, keys: &Buffer
         },
         Extent3d {
             width: 2,
-            height: 1,
-            depth_or_array_layers: 1,
+            ..default()
         },
     );
 }

@@ -17,7 +17,6 @@ mod lines;
 #[cfg(feature = "objects")]
 mod marks;
 mod missing;
-mod object_depths;
 mod pass;
 mod passes;
 mod plan;

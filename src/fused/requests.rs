@@ -1,6 +1,5 @@
 //! Turns the plan of a view into requests to the services.
 
-use crate::effect::{AffectedArea, AnyEffect, EffectContext, Needs};
 use std::sync::Arc;
 
 use bevy::{
@@ -22,7 +21,6 @@ use super::{
     drawn_area::DrawnArea,
     key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
-    object_depths::object_depths,
     pass::StylizePipeline,
     passes::{Reads, passes},
     prepare::{EarlierPassRequest, FusedRequest, TexturePass},
@@ -35,8 +33,9 @@ use crate::{
         request::RangeRequest,
         view::ViewUniform,
     },
+    effect::{AffectedArea, AnyEffect, EffectContext, Needs},
     lines::{LineLayers, LinePasses, LinePipelines, LineRequest},
-    objects::{IdRequest, ObjectDepthRequest},
+    objects::{IdRequest, ObjectDepthRequest, ObjectEye},
 };
 
 /// The requests of one plan to the services, for one view, and their pipelines.
@@ -249,6 +248,29 @@ fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
 fn raw_depth(view: &ViewPlan, plan: &Plan, scene: &Scene) -> RawDepth {
     let sky = plan.depth_map.sky_beyond;
     (view.projection).raw(&view.clip_from_view, scene.drawn(), sky)
+}
+
+/// What the effects of a plan ask for that treat objects as a whole.
+fn object_depths(
+    (plan, view): (&Plan, &ViewPlan),
+    context: &EffectContext,
+    uniform: ViewUniform,
+    extracted: &ExtractedView,
+) -> Option<ObjectDepthRequest> {
+    let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
+    wanted.then(|| ObjectDepthRequest {
+        eye: ObjectEye {
+            place: context.eye,
+            orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
+            forward: *extracted.world_from_view.forward(),
+            forgets: 0,
+            axis: context.depth_axis,
+            spare: Vec2::ZERO,
+            view: uniform,
+        },
+        mapping: plan.depth_map.mapping,
+        cuts: view.cuts,
+    })
 }
 
 fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {

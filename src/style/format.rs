@@ -171,29 +171,13 @@ impl Serialize for ComicStyle {
             file.serialize_field("depth_map", &self.depth_map)?;
         }
         for effect in self.effects() {
-            file.serialize_field(effect.effect_type().name, &Present(effect))?;
+            // An `Option` in the file, as `None` may be written.
+            file.serialize_field(effect.effect_type().name, &Some(effect.as_serialize()))?;
         }
         for name in self.off.iter().filter(|_| self.partial) {
             file.serialize_field(name, &None::<()>)?;
         }
         file.end()
-    }
-}
-
-/// An effect that is there: an `Option` in the file, as `None` may be written.
-struct Present<'a>(&'a dyn AnyEffect);
-
-impl Serialize for Present<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_some(&Erased(self.0))
-    }
-}
-
-struct Erased<'a>(&'a dyn AnyEffect);
-
-impl Serialize for Erased<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        erased_serde::serialize(self.0.as_serialize(), serializer)
     }
 }
 

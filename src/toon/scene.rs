@@ -120,27 +120,14 @@ pub(super) struct SceneChanges {
 pub(super) fn build(app: &mut App) {
     app.init_resource::<Copies>()
         .init_resource::<SceneChanges>()
-        .add_observer(
-            |on: On<Insert, MeshMaterial3d<StandardMaterial>>,
-             mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Insert, ChildOf>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, ChildOf>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, ToonScene>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        );
+        .add_observer(note::<Insert, MeshMaterial3d<StandardMaterial>>)
+        .add_observer(note::<Insert, ChildOf>)
+        .add_observer(note::<Remove, ChildOf>)
+        .add_observer(note::<Remove, ToonScene>);
+}
+
+fn note<E: EntityEvent, B: Bundle>(on: On<E, B>, mut changes: ResMut<SceneChanges>) {
+    changes.subtrees.insert(on.event_target());
 }
 
 /// The scenes, and the way to them.

@@ -14,7 +14,7 @@ use bevy::{
         render_asset::RenderAssets,
         render_resource::{
             Extent3d, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout, TexelCopyTextureInfo,
-            TextureAspect, TextureDimension, TextureFormat,
+            TextureDimension, TextureFormat,
         },
         renderer::{RenderContext, RenderQueue, ViewQuery},
         texture::GpuImage,
@@ -56,7 +56,7 @@ pub(super) fn add_texture(images: &mut Assets<Image>) {
     let size = Extent3d {
         width: COLUMNS,
         height: ROWS as u32,
-        depth_or_array_layers: 1,
+        ..default()
     };
     let empty = vec![0; COLUMNS as usize * ROWS * 16];
     let image = Image::new(
@@ -174,7 +174,7 @@ fn write_columns(
     let size = Extent3d {
         width,
         height: ROWS as u32,
-        depth_or_array_layers: 1,
+        ..default()
     };
     queue.write_texture(image.texture.as_image_copy(), &bytes, layout, size);
 }
@@ -198,20 +198,13 @@ fn copy_range(
         layout: TexelCopyBufferLayout::default(),
     };
     let to = TexelCopyTextureInfo {
-        texture: &image.texture,
-        mip_level: 0,
         origin: Origin3d {
             x: *column,
-            y: 0,
-            z: 0,
+            ..default()
         },
-        aspect: TextureAspect::All,
+        ..image.texture.as_image_copy()
     };
-    let texel = Extent3d {
-        width: 1,
-        height: 1,
-        depth_or_array_layers: 1,
-    };
+    // One texel.
     ctx.command_encoder()
-        .copy_buffer_to_texture(from, to, texel);
+        .copy_buffer_to_texture(from, to, Extent3d::default());
 }
