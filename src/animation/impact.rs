@@ -96,7 +96,6 @@ impl Impact {
         }
     }
 
-    /// The effects of one drawing.
     fn effects(&self, drawing: u32, reduced: bool) -> Vec<Box<dyn AnyEffect>> {
         let exchanged = self.alternate && drawing % 2 == 1;
         let tones = if reduced {
@@ -314,7 +313,6 @@ pub(super) fn keep_flashes(
     }
 }
 
-/// Draws the impacts that are shown.
 pub(super) fn run_impacts(
     mut cameras: Query<(Entity, Option<&RenderTarget>, &mut Impacts)>,
     (mut past, targets): (ResMut<PastFlashes>, Targets),

@@ -61,7 +61,6 @@ pub(super) fn hold_while_extracting(render_app: &mut SubApp) {
     });
 }
 
-/// The poses that are held.
 #[derive(Default)]
 struct Poses {
     roots: Option<QueryState<(Entity, &'static SteppedAnimation)>>,

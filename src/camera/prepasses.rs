@@ -193,7 +193,6 @@ impl Request<'_> {
         }
     }
 
-    /// Whether a component of the camera requires the prepass `P`.
     fn is_required<P: Component>(&self) -> bool {
         let Some(prepass) = self.components.component_id::<P>() else {
             return false;

@@ -25,12 +25,6 @@ impl Default for StyleWeight {
     }
 }
 
-impl StyleWeight {
-    pub(crate) fn sanitized(self) -> f32 {
-        clamp_or_default(self.0, 1.0, 0.0, 1.0)
-    }
-}
-
 /// Shows the original picture left of a vertical line, and the styled picture right
 /// of it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -45,12 +39,6 @@ pub struct SplitView {
 impl Default for SplitView {
     fn default() -> Self {
         Self { at: 0.5 }
-    }
-}
-
-impl SplitView {
-    pub(crate) fn sanitized(self) -> f32 {
-        clamp_or_default(self.at, 0.5, 0.0, 1.0)
     }
 }
 
@@ -145,8 +133,8 @@ impl Default for Composite {
 impl Composite {
     pub fn new(weight: Option<&StyleWeight>, split: Option<&SplitView>) -> Self {
         Self {
-            weight: weight.copied().unwrap_or_default().sanitized(),
-            split: split.map_or(0.0, |split| split.sanitized()),
+            weight: weight.map_or(1.0, |weight| clamp_or_default(weight.0, 1.0, 0.0, 1.0)),
+            split: split.map_or(0.0, |split| clamp_or_default(split.at, 0.5, 0.0, 1.0)),
         }
     }
 

@@ -37,7 +37,6 @@ pub(crate) struct RangePasses {
     pub conversion: Option<QueuedPass>,
 }
 
-/// The pipelines of a reduction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Reduction {
     Compute {
@@ -50,7 +49,6 @@ pub(crate) enum Reduction {
     },
 }
 
-/// Specializes the pipelines for requests.
 #[derive(SystemParam)]
 pub(crate) struct RangePipelines<'w> {
     ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,

@@ -115,7 +115,6 @@ impl ViewDepthRange {
     }
 }
 
-/// The uniforms of all views' ranges.
 #[derive(Resource)]
 pub(crate) struct RangeUniforms {
     pub views: DynamicUniformBuffer<RangeView>,

@@ -103,7 +103,6 @@ pub(super) fn described<'a>(
     }
 }
 
-/// The passes before the last one.
 pub(super) struct EarlierPasses<'a>(Vec<EarlierPass<'a>>);
 
 struct EarlierPass<'a> {

@@ -440,7 +440,6 @@ fn masked(plan: &Plan, context: &EffectContext) -> Vec<(&'static str, bool)> {
     later.map(masked).collect()
 }
 
-/// The shader definitions of a debug view.
 fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
     match view {
         DebugView::Effect(name) => vec![

@@ -143,7 +143,6 @@ pub(super) fn stylize<const PRINTS: bool>(
     ran(request, &ledger);
 }
 
-/// The draw calls of the pass.
 struct Draws<'a> {
     base: Option<&'a RenderPipeline>,
     pipeline: &'a RenderPipeline,

@@ -38,7 +38,6 @@ struct EffectModules {
     _modules: Vec<Handle<Shader>>,
 }
 
-/// The shader of the composed pass.
 #[derive(Resource)]
 struct FusedShader(Handle<Shader>);
 

@@ -90,7 +90,6 @@ type Object = (
     Option<Ref<'static, RenderLayers>>,
 );
 
-/// Draws the ribbons of every object.
 pub(super) fn draw(mut objects: Query<Object>, time: Res<Time>, mut paper: Paper) {
     let scale = paper.scale();
     for (lines, mut trail, transform, visibility, layers) in &mut objects {

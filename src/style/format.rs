@@ -120,7 +120,7 @@ impl EffectRegistry {
     /// # Errors
     /// As [`ComicStyle::from_ron`].
     pub fn read_style(&self, text: &str) -> Result<ReadStyle, ComicStyleError> {
-        let current = match stated_version(text) {
+        let current = match renamed::version(text) {
             Some(PREVIOUS) => renamed::upgraded(text, "3", renamed::STYLE),
             None | Some(VERSION) => Upgraded::unchanged(text),
             Some(found) => return Err(ComicStyleError::Version { found }),
@@ -138,11 +138,6 @@ impl EffectRegistry {
             advice: current.advice(),
         })
     }
-}
-
-/// The version that a text states.
-pub(crate) fn stated_version(text: &str) -> Option<u32> {
-    renamed::version(text)
 }
 
 fn parse(

@@ -111,7 +111,6 @@ impl Default for DetailAxis {
 }
 
 impl DetailAxis {
-    /// The shader definition.
     pub(super) fn definition(self) -> &'static str {
         match self {
             Self::Depth { .. } => "DETAIL_DEPTH",

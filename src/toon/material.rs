@@ -198,7 +198,6 @@ impl Default for ToonLight {
 }
 
 impl ToonLight {
-    /// The ramp that is drawn.
     pub(super) fn drawn_ramp(&self) -> Option<Cow<'_, Ramp>> {
         let painted = self.ramp_map.is_ready();
         let default = painted.then(|| Cow::Owned(Ramp::default()));

@@ -81,7 +81,6 @@ fn size_of(image: &Image) -> Result<[u32; 2], String> {
     Ok([size.width, size.height])
 }
 
-/// What was found of an image.
 enum Found {
     Sums(Handle<Image>),
     Unusable,

@@ -206,7 +206,6 @@ fn choose(
         .cloned()
 }
 
-/// The materials of a mesh.
 type Dressed = (
     Option<&'static MeshMaterial3d<StandardMaterial>>,
     Option<&'static MeshMaterial3d<ToonMaterial>>,

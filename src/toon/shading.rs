@@ -123,7 +123,6 @@ pub enum ToonShadingError {
 const VERSION: u32 = 2;
 const PREVIOUS: u32 = VERSION - 1;
 
-/// What a file has.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "ToonShading", deny_unknown_fields)]
 struct File {

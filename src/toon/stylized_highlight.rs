@@ -119,7 +119,6 @@ impl Default for StylizedHighlight {
 impl_sanitized!(StylizedHighlight);
 
 impl HighlightFrame {
-    /// The shader definition.
     pub(super) fn definition(self) -> &'static str {
         match self {
             Self::View => "STYLIZED_HIGHLIGHT_VIEW",

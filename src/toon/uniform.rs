@@ -106,7 +106,6 @@ impl From<&ToonLight> for ToonKey {
 }
 
 impl ToonKey {
-    /// Whether the material reads smoothed normals.
     pub(super) fn reads_smoothed(self) -> bool {
         self.proxy == Some(ProxyKey::Smoothed)
     }

@@ -51,7 +51,6 @@ impl From<&ViewRanges> for Option<&'static Handle<Image>> {
     }
 }
 
-/// Adds the texture.
 pub(super) fn add_texture(images: &mut Assets<Image>) {
     let size = Extent3d {
         width: COLUMNS,

@@ -201,7 +201,6 @@ impl Focus {
         }
     }
 
-    /// The largest radius in physical pixels.
     fn physical_radius(&self, view: &EffectContext) -> f32 {
         (self.radius * view.scale_factor).min(256.0)
     }

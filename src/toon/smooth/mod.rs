@@ -27,7 +27,6 @@ struct SmoothMesh {
     own_events: usize,
 }
 
-/// The rounds that a material asks for.
 fn rounds_of(material: &ToonMaterial) -> Option<u32> {
     match material.extension.proxy?.sanitized().shape {
         ProxyShape::Smoothed { rounds } => Some(rounds),
