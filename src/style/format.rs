@@ -70,6 +70,14 @@ pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
+/// The text of settings; an error says why they have none.
+pub(crate) fn written<T: Serialize>(settings: &T) -> Result<String, String> {
+    let pretty = ron::ser::PrettyConfig::default().indentor("    ");
+    let text = ron_options().to_string_pretty(settings, pretty);
+    let text = text.map_err(|error| error.to_string())?;
+    Ok(text + "\n")
+}
+
 impl ComicStyle {
     /// Reads a style from the text of a `.comic.ron` file, with the effects of
     /// this crate. [`EffectRegistry::style_from_ron`] also knows those of an app.
@@ -89,14 +97,7 @@ impl ComicStyle {
     /// # Errors
     /// [`ComicStyleError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ComicStyleError> {
-        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-        let mut text = ron_options()
-            .to_string_pretty(self, pretty)
-            .map_err(|error| ComicStyleError::Write {
-                message: error.to_string(),
-            })?;
-        text.push('\n');
-        Ok(text)
+        written(self).map_err(|message| ComicStyleError::Write { message })
     }
 }
 

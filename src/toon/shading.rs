@@ -210,14 +210,7 @@ impl ToonShading {
     /// # Errors
     /// [`ToonShadingError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ToonShadingError> {
-        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-        let mut text = format::ron_options()
-            .to_string_pretty(self, pretty)
-            .map_err(|error| ToonShadingError::Write {
-                message: error.to_string(),
-            })?;
-        text.push('\n');
-        Ok(text)
+        format::written(self).map_err(|message| ToonShadingError::Write { message })
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
     rim::RimUniform,
     stylized_highlight::StylizedHighlightUniform,
 };
-use crate::settings::clamp_or_default;
+use crate::{gpu::definitions, settings::clamp_or_default};
 
 /// The uniform: `Toon` in `bindings.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -119,17 +119,14 @@ impl ToonKey {
     ) -> Vec<ShaderDefVal> {
         let rest = self.hatch.is_some_and(|hatch| hatch.needs_rest(others));
         let smoothed = smoothed && self.reads_smoothed();
-        let names = [
+        let other_normal = smoothed || self.proxy == Some(ProxyKey::Solid);
+        let found = definitions([
             (rest, "HATCH_REST"),
             (smoothed, "PROXY_SMOOTHED"),
-            (
-                smoothed || self.proxy == Some(ProxyKey::Solid),
-                "PROXY_NORMAL",
-            ),
+            (other_normal, "PROXY_NORMAL"),
             (self.visible, "DETAIL_VISIBLE"),
-        ];
-        let used = names.into_iter().filter(|(is_used, _)| *is_used);
-        used.map(|(_, name)| name.into()).collect()
+        ]);
+        found.collect()
     }
 
     /// The shader definitions, in addition to those of the mesh and the view. `smoothed`: the mesh
@@ -139,44 +136,38 @@ impl ToonKey {
             let is_one = |d: &ShaderDefVal| matches!(d, ShaderDefVal::Bool(n, true) if names.contains(&n.as_str()));
             others.iter().any(is_one)
         };
-        let mut all = Vec::new();
-        if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
-            all.push("ENVIRONMENT".into());
-        }
         // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read
         // four texels at once.
-        let unlike = ["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"];
-        if has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !has(&unlike) {
-            all.push("SLOPED_SHADOWS".into());
-        }
-        all.extend(self.ramp.into_iter().flat_map(RampKey::definitions));
-        if self.stylized_highlight.is_some() || self.rim {
-            all.push("KEY_LIGHT".into());
-        }
-        if let Some((shape, frame)) = self.stylized_highlight {
-            all.extend(["STYLIZED_HIGHLIGHT".into(), frame.definition().into()]);
-            all.push(ShaderDefVal::UInt(
-                "STYLIZED_HIGHLIGHT_SHAPE".into(),
-                shape as u32,
-            ));
-        }
-        let proxy = self
-            .proxy
-            .map_or(&[][..], |proxy| proxy.definitions(smoothed));
-        all.extend(proxy.iter().map(|name| ShaderDefVal::from(*name)));
+        let unlike = has(&["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"]);
+        let sloped = has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !unlike;
         let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
         let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
-        all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
-        all.extend(of_map.then(|| "THRESHOLD_MAP".into()));
-        all.extend((of_vertices || of_map).then(|| "THRESHOLD".into()));
-        all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
-        if self.rim {
-            all.push("RIM".into());
-        }
-        if self.even_rim && has(&["DEPTH_PREPASS"]) {
-            all.push("DEPTH_RIM".into());
-        }
-        all
+        let environment = has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]);
+        let flags = definitions([
+            (environment, "ENVIRONMENT"),
+            (sloped, "SLOPED_SHADOWS"),
+            (self.stylized_highlight.is_some() || self.rim, "KEY_LIGHT"),
+            (of_vertices, "VERTEX_THRESHOLD"),
+            (of_map, "THRESHOLD_MAP"),
+            (of_vertices || of_map, "THRESHOLD"),
+            (self.rim, "RIM"),
+            (self.even_rim && has(&["DEPTH_PREPASS"]), "DEPTH_RIM"),
+        ]);
+        let ramp = self.ramp.into_iter().flat_map(RampKey::definitions);
+        let sign = self.stylized_highlight.map(|(shape, frame)| {
+            let shape = ShaderDefVal::UInt("STYLIZED_HIGHLIGHT_SHAPE".into(), shape as u32);
+            let flags = ["STYLIZED_HIGHLIGHT", frame.definition()];
+            flags.map(ShaderDefVal::from).into_iter().chain([shape])
+        });
+        let proxy = self.proxy.map(|proxy| proxy.definitions(smoothed));
+        let proxy = proxy
+            .into_iter()
+            .flatten()
+            .map(|name| ShaderDefVal::from(*name));
+        let hatch = self.hatch.map(|hatch| hatch.definitions(others));
+        let modes = sign.into_iter().flatten().chain(proxy);
+        let modes = modes.chain(hatch.into_iter().flatten());
+        flags.chain(ramp).chain(modes).collect()
     }
 }
 

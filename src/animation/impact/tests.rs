@@ -95,15 +95,6 @@ fn every_flash_of_an_impact_counts_from_where_it_begins() {
     }
 }
 
-#[test]
-fn flashes_of_other_cameras_count() {
-    let mut impacts = Impacts::default();
-    let one = || impact(1, 12.0, false);
-    assert!(!impacts.start(one(), Impact::MOST_FLASHES, 0.0));
-    assert!(impacts.start(one(), Impact::MOST_FLASHES - 1, 0.0));
-    assert!(!impacts.start(one(), Impact::MOST_FLASHES - 1, 0.9));
-}
-
 fn app() -> App {
     let mut app = App::new();
     app.init_resource::<ComicsDiagnostics>()
