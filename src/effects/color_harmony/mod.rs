@@ -156,7 +156,7 @@ impl Effect for ColorHarmony {
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode as u32);
         variants.number("SQUARE_ROOT", u32::from(self.is_square_root()));
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.flag("FAITHFUL", self.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> ColorHarmonyUniform {
@@ -175,7 +175,6 @@ impl Effect for ColorHarmony {
             amount: self.amount,
             mode: self.mode as u32,
             square_root: u32::from(self.is_square_root()),
-            faithful: u32::from(self.is_faithful()),
         }
     }
 }
@@ -203,5 +202,4 @@ pub struct ColorHarmonyUniform {
     amount: f32,
     mode: u32,
     square_root: u32,
-    faithful: u32,
 }

@@ -119,7 +119,7 @@ impl Effect for Colorization {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode as u32);
-        variants.number("FAITHFUL", u32::from(self.equations.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> ColorizationUniform {
@@ -150,7 +150,6 @@ impl Effect for Colorization {
             },
             amount: self.amount,
             mode: self.mode as u32,
-            faithful: u32::from(self.equations.is_faithful()),
         }
     }
 
@@ -183,5 +182,4 @@ pub struct ColorizationUniform {
     hue: f32,
     amount: f32,
     mode: u32,
-    faithful: u32,
 }

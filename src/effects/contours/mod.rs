@@ -106,7 +106,7 @@ impl Effect for Contours {
     fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         let radius = self.radius(view);
         variants.number("OPERATOR", self.operator as u32);
-        variants.number("FAITHFUL", u32::from(self.equations.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
         variants.flag("WHOLE", radius.fract() == 0.0);
         variants.flag("SINGLE_RING", radius == 1.0 || radius == 2.0);
         variants.flag("STEADY", self.opacity_fade == 0.0);
@@ -134,7 +134,6 @@ impl Effect for Contours {
             radius: self.radius(view),
             opacity_fade: self.opacity_fade,
             operator_kind: self.operator as u32,
-            faithful: u32::from(self.equations.is_faithful()),
         }
     }
 }
@@ -169,5 +168,4 @@ pub struct ContoursUniform {
     radius: f32,
     opacity_fade: f32,
     operator_kind: u32,
-    faithful: u32,
 }

@@ -86,7 +86,7 @@ impl Effect for Desaturation {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("CURVE", self.curve());
-        variants.number("FAITHFUL", u32::from(self.equations.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> DesaturationUniform {
@@ -95,7 +95,6 @@ impl Effect for Desaturation {
             amount_near: self.amount_near,
             exponent: self.exponent,
             curve: self.curve(),
-            faithful: u32::from(self.equations.is_faithful()),
         }
     }
 }
@@ -118,5 +117,4 @@ pub struct DesaturationUniform {
     amount_near: f32,
     exponent: f32,
     curve: u32,
-    faithful: u32,
 }

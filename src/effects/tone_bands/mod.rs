@@ -67,7 +67,7 @@ impl Effect for ToneBands {
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("FAITHFUL", u32::from(self.equations.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, view: &EffectContext) -> ToneBandsUniform {
@@ -75,7 +75,6 @@ impl Effect for ToneBands {
             levels: self.levels as f32,
             softness: self.softness * view.scale_factor,
             amount: self.amount,
-            faithful: u32::from(self.equations.is_faithful()),
         }
     }
 }
@@ -86,5 +85,4 @@ pub struct ToneBandsUniform {
     levels: f32,
     softness: f32,
     amount: f32,
-    faithful: u32,
 }
