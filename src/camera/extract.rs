@@ -76,7 +76,7 @@ pub(super) fn extract_views(
         );
         // For as long as a mesh may fade: its coming and going would queue all meshes anew.
         #[cfg(feature = "objects")]
-        let writes = asked.plan.fades || !writes.0.is_empty();
+        let writes = asked.plan.objects.fades || !writes.0.is_empty();
         #[cfg(not(feature = "objects"))]
         let writes = false;
         want_objects(&mut view, (entity, &asked.plan), writes);
@@ -121,7 +121,7 @@ fn fade_levels(
     at: Option<&GlobalTransform>,
 ) {
     let fading = at
-        .filter(|_| plan.fades && plan.needs_depth())
+        .filter(|_| plan.objects.fades && plan.needs_depth())
         .map(|at| levels.fading(at.translation(), places))
         .filter(|fading| !fading.meshes.is_empty());
     set_or_remove::<FadingMeshes>(view, fading);
@@ -138,7 +138,7 @@ fn position_of(target: &EffectTarget, places: &Query<&GlobalTransform>) -> Optio
 fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writes: bool) {
     let wanted = IdsWanted {
         ids: plan.draws_ids(),
-        layer: plan.marks,
+        layer: plan.objects.marks,
         widths: plan.draws_widths(),
     };
     set_or_remove(view, (wanted.ids || wanted.layer).then_some(wanted));

@@ -127,11 +127,11 @@ impl StylizeKey {
                     .line_modifiers(context)
                     .layers
                     .is_some_and(|p| p.has_colors()),
-            object_styles: (lines && plan.object_styles)
-                || plan.unstyled
+            object_styles: (lines && plan.objects.any)
+                || plan.objects.unstyled
                 || needs.contains(Needs::OBJECT_ANCHORS),
-            unstyled_colors: plan.unstyled,
-            unstyled_print: plan.unstyled,
+            unstyled_colors: plan.objects.unstyled,
+            unstyled_print: plan.objects.unstyled,
             own_pixels: plan.own_pixels,
             mask_reach: mask_reach(plan, inputs.widest_object, context),
             beyond: plan.beyond,
@@ -419,7 +419,7 @@ fn mask_reach(plan: &Plan, widest_object: f32, context: &EffectContext) -> u32 {
     let lines = plan
         .lines
         .filter(|_| plan.own_pixels == Some(OwnPixels::Ids));
-    let widest = (widest_object, plan.vertex_widths);
+    let widest = (widest_object, plan.objects.widths);
     let reach = |lines: Outlines| lines.reach(context.scale_factor, widest, context.sheet);
     lines.map_or(2, |lines| reach(lines).clamp(1, 32) as u32)
 }

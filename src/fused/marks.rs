@@ -44,7 +44,7 @@ impl MarkPipelines<'_> {
         (scene, uniform): (&Scene, ViewUniform),
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Option<MarkRequests> {
-        let (size, samples) = scene.depth.filter(|_| plan.marks)?;
+        let (size, samples) = scene.depth.filter(|_| plan.objects.marks)?;
         let widest = self.marks.styles.max_width();
         let request = request(view, (scene, uniform), widest)?;
         let passes = lines.get(cache, &request);

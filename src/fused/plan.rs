@@ -26,6 +26,12 @@ pub(super) struct Planned {
     pub replaced: bool,
 }
 
+impl Planned {
+    pub fn name(&self) -> &'static str {
+        self.effect.effect_type().name
+    }
+}
+
 impl PartialEq for Planned {
     fn eq(&self, other: &Self) -> bool {
         self.effect.equals(other.effect.as_ref())
@@ -43,23 +49,10 @@ pub(crate) struct Plan {
     pub(super) left_out: Vec<(&'static str, SkipReason)>,
     /// The lines to find.
     pub lines: Option<Outlines>,
-    /// Some object has its own line style, or no lines.
-    pub object_styles: bool,
-    /// Some mesh is divided into sections, and some because it has `MeshSections`.
-    pub any_sections: bool,
-    pub asked_sections: bool,
+    /// The components of objects that it follows.
+    pub objects: ObjectChanges,
     /// Borders of sections are creases.
     pub sections: bool,
-    /// The vertices of some mesh say how wide its lines are.
-    pub vertex_widths: bool,
-    /// The colour effects leave some object alone.
-    pub unstyled: bool,
-    /// Screens follow some object.
-    pub anchored: bool,
-    /// Some object is outlined by itself.
-    pub marks: bool,
-    /// Some mesh fades at some distance.
-    pub fades: bool,
     /// Lines fade into the camera's distance fog.
     pub fog: bool,
     pub lacks: DeviceLacks,
@@ -98,14 +91,7 @@ impl Plan {
                 .copied()
                 .unwrap_or_default()
                 .sanitized(),
-            object_styles: objects.any,
-            any_sections: objects.sections,
-            asked_sections: objects.asked_sections,
-            vertex_widths: objects.widths,
-            unstyled: objects.unstyled,
-            anchored: objects.anchored,
-            marks: objects.marks,
-            fades: objects.fades,
+            objects,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
@@ -121,7 +107,8 @@ impl Plan {
             ..Self::default()
         };
         let asked = plan.collect(camera, shown, types);
-        if !(asked || plan.marks || plan.readback || plan.histogram || plan.view.is_some()) {
+        if !(asked || plan.objects.marks || plan.readback || plan.histogram || plan.view.is_some())
+        {
             return None;
         }
         plan.show(types);
@@ -186,19 +173,13 @@ impl Plan {
         let DebugView::Effect(name) = view else {
             return;
         };
-        if self
-            .effects
-            .iter()
-            .any(|p| p.effect.effect_type().name == name)
-        {
+        if self.effects.iter().any(|p| p.name() == name) {
             return;
         }
         if let Some(effect) = types.iter().find(|effect| effect.name == name) {
             let at = |name| types.iter().position(|t| t.name == name);
             let own = at(name);
-            let before = self
-                .effects
-                .partition_point(|p| at(p.effect.effect_type().name) < own);
+            let before = self.effects.partition_point(|p| at(p.name()) < own);
             let effect = (effect.default)();
             self.effects.insert(
                 before,
@@ -245,14 +226,14 @@ impl Plan {
             .copied()
             .collect();
         for planned in &mut self.effects {
-            planned.replaced = replaced.contains(&planned.effect.effect_type().name);
+            planned.replaced = replaced.contains(&planned.name());
         }
-        self.object_styles &= self.lines.is_some();
+        self.objects.any &= self.lines.is_some();
         self.sections = has_sections && self.has_section_borders();
-        self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
+        self.objects.widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);
-        self.unstyled &= colors;
+        self.objects.unstyled &= colors;
         self.fog = self.lines.is_some_and(|lines| match lines.fog {
             LineFog::Ignore => false,
             LineFog::Fade => self.fog,
@@ -272,8 +253,8 @@ impl Plan {
         let Some(lines) = self.lines.filter(Outlines::has_measured_creases) else {
             return false;
         };
-        let found = self.any_sections || lines.objects.is_some();
-        self.asked_sections || (found && lines.divides_meshes())
+        let found = self.objects.sections || lines.objects.is_some();
+        self.objects.asked_sections || (found && lines.divides_meshes())
     }
 
     /// Adds the lines that a debug view shows.
@@ -302,7 +283,7 @@ impl Plan {
             let Some(reason) = reason(planned.effect.as_ref()) else {
                 return true;
             };
-            left_out.push((planned.effect.effect_type().name, reason));
+            left_out.push((planned.name(), reason));
             false
         });
     }
@@ -332,7 +313,7 @@ impl Plan {
             needs |= Needs::LINES;
         }
         let available = [
-            (Needs::OBJECT_ANCHORS, self.anchored),
+            (Needs::OBJECT_ANCHORS, self.objects.anchored),
             (Needs::WORLD_ORIGIN, self.has_origin),
             (Needs::OBJECT_DEPTHS, self.has_ids()),
             (Needs::MIDDLE_DEPTH, !self.lacks.compute_shaders),
@@ -340,7 +321,7 @@ impl Plan {
         for (need, _) in available.into_iter().filter(|(_, is_there)| !is_there) {
             needs.remove(need);
         }
-        if self.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
+        if self.objects.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
             needs |= Needs::IDS;
         }
         if self.draws() {
@@ -412,7 +393,7 @@ impl Plan {
         let read = read | Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
-            || self.marks
+            || self.objects.marks
             || self.histogram
             || self.materials
             || self.lends
@@ -426,14 +407,14 @@ impl Plan {
         lines.is_some_and(|lines| lines.finds_by_normals() || lines.needs_normals())
             || self.needs().contains(Needs::NORMALS)
             // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
-            || (self.fades && self.needs_depth())
+            || (self.objects.fades && self.needs_depth())
     }
 
     /// Whether the ids of objects are drawn for this camera.
     pub fn draws_ids(&self) -> bool {
         let lines = self.lines.is_some_and(|lines| {
             let needs_objects = lines.silhouettes.is_some() && lines.weight.reads_ids();
-            lines.objects.is_some() || self.object_styles || self.sections || needs_objects
+            lines.objects.is_some() || self.objects.any || self.sections || needs_objects
         });
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
         self.has_ids() && ids
