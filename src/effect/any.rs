@@ -165,6 +165,12 @@ impl<E: Effect> AnyEffect for E {
     }
 }
 
+impl dyn AnyEffect {
+    pub(crate) fn name(&self) -> &'static str {
+        self.effect_type().name
+    }
+}
+
 impl Clone for Box<dyn AnyEffect> {
     fn clone(&self) -> Self {
         (**self).boxed()

@@ -103,7 +103,7 @@ impl StylizeKey {
         let lines = needs.intersects(Needs::LINES);
         let mut variants = Variants::default();
         for effect in plan.drawn() {
-            variants.effect = effect.effect_type().name;
+            variants.effect = effect.name();
             effect.any_variants(context, &mut variants);
         }
         variants.effect = "";
@@ -114,7 +114,7 @@ impl StylizeKey {
             // samples.
             samples: inputs.samples.filter(|_| reads_pixels).unwrap_or(1),
             oblique: depth && inputs.oblique,
-            effects: plan.drawn().map(|e| e.effect_type().name).collect(),
+            effects: plan.drawn().map(|e| e.name()).collect(),
             variants,
             needs,
             depth,
@@ -203,9 +203,7 @@ impl StylizeKey {
                 None => Read::Picture,
             },
             inside: self.inside || pass.is_earlier,
-            left_out: others
-                .map(|(_, effect)| effect.effect_type().name)
-                .collect(),
+            left_out: others.map(|(_, effect)| effect.name()).collect(),
             ..self.clone()
         }
     }
@@ -226,7 +224,7 @@ impl StylizeKey {
         effect: &'static str,
         context: &EffectContext,
     ) -> [Self; 2] {
-        let found = plan.drawn().find(|e| e.effect_type().name == effect);
+        let found = plan.drawn().find(|e| e.name() == effect);
         let reach = found.and_then(|effect| effect.any_max_radius(context));
         let boxes = Boxes { effect, reach };
         let rows = (Drawn::Across(boxes), Read::Picture);
@@ -435,7 +433,7 @@ fn masked(plan: &Plan, context: &EffectContext) -> Vec<(&'static str, bool)> {
         .filter(|effect| effect.effect_type().stage > EffectStage::Print);
     let masked = |effect: &dyn AnyEffect| {
         let is_line = effect.any_affected_area(context) != AffectedArea::Everywhere;
-        (effect.effect_type().name, is_line)
+        (effect.name(), is_line)
     };
     later.map(masked).collect()
 }

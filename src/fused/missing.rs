@@ -45,7 +45,7 @@ impl Plan {
             Input::ObjectIds => (Needs::IDS, SkipReason::NoStorageBuffers),
         };
         for planned in std::mem::take(&mut plan.effects) {
-            let name = planned.name();
+            let name = planned.effect.name();
             match planned.effect.any_without(needs) {
                 Some(effect)
                     if effect.any_strength() > 0.0 && !effect.any_needs().intersects(needs) =>

@@ -210,7 +210,7 @@ impl<'a> Draws<'a> {
 /// Reports that the pass and its effects ran.
 fn ran(request: &FusedRequest, ledger: &StageLedger) {
     for effect in request.plan.drawn() {
-        let stage = ComicsStage::Effect(effect.effect_type().name);
+        let stage = ComicsStage::Effect(effect.name());
         ledger.set(request.camera, stage, StageOutcome::Ran);
     }
     ledger.set(request.camera, ComicsStage::Stylize, StageOutcome::Ran);

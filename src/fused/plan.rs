@@ -26,12 +26,6 @@ pub(super) struct Planned {
     pub replaced: bool,
 }
 
-impl Planned {
-    pub fn name(&self) -> &'static str {
-        self.effect.effect_type().name
-    }
-}
-
 impl PartialEq for Planned {
     fn eq(&self, other: &Self) -> bool {
         self.effect.equals(other.effect.as_ref())
@@ -132,7 +126,7 @@ impl Plan {
         types: &[&'static EffectType],
     ) -> bool {
         let of_camera = |effect: &&EffectType| {
-            let instead = shown.iter().find(|s| s.effect_type().name == effect.name);
+            let instead = shown.iter().find(|s| s.name() == effect.name);
             let own = || (effect.get)(camera).map(AnyEffect::any_sanitized);
             instead.cloned().or_else(own)
         };
@@ -149,7 +143,7 @@ impl Plan {
             let found = own.or_else(|| {
                 let name = effect.name;
                 let mut implied = implied.iter();
-                implied.find(|i| i.effect_type().name == name).cloned()
+                implied.find(|i| i.name() == name).cloned()
             });
             match found {
                 Some(found) if found.any_strength() > 0.0 => self.effects.push(Planned {
@@ -173,13 +167,13 @@ impl Plan {
         let DebugView::Effect(name) = view else {
             return;
         };
-        if self.effects.iter().any(|p| p.name() == name) {
+        if self.effects.iter().any(|p| p.effect.name() == name) {
             return;
         }
         if let Some(effect) = types.iter().find(|effect| effect.name == name) {
             let at = |name| types.iter().position(|t| t.name == name);
             let own = at(name);
-            let before = self.effects.partition_point(|p| at(p.name()) < own);
+            let before = self.effects.partition_point(|p| at(p.effect.name()) < own);
             let effect = (effect.default)();
             self.effects.insert(
                 before,
@@ -226,7 +220,7 @@ impl Plan {
             .copied()
             .collect();
         for planned in &mut self.effects {
-            planned.replaced = replaced.contains(&planned.name());
+            planned.replaced = replaced.contains(&planned.effect.name());
         }
         self.objects.any &= self.lines.is_some();
         self.sections = has_sections && self.has_section_borders();
@@ -241,7 +235,7 @@ impl Plan {
         });
         // The debug view of an effect that is not drawn shows nothing.
         if let Some(DebugView::Effect(name)) = self.view
-            && !self.drawn().any(|effect| effect.effect_type().name == name)
+            && !self.drawn().any(|effect| effect.name() == name)
         {
             self.view = None;
         }
@@ -283,7 +277,7 @@ impl Plan {
             let Some(reason) = reason(planned.effect.as_ref()) else {
                 return true;
             };
-            left_out.push((planned.name(), reason));
+            left_out.push((planned.effect.name(), reason));
             false
         });
     }

@@ -200,10 +200,10 @@ impl ChosenArea {
         let without_lines = line_reach(plan, context).is_some();
         let is_local =
             |effect: &dyn AnyEffect| effect.any_affected_area(context) != AffectedArea::Everywhere;
-        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
+        let in_last = plan.drawn().filter(|e| whole.applies(e.name()));
         let local: Vec<_> = in_last
             .filter(|effect| is_local(*effect))
-            .map(|effect| effect.effect_type().name)
+            .map(|effect| effect.name())
             .collect();
         let saves = |request: &LineRequest| {
             let jumps = request.jumps.is_some() && !local.is_empty();

@@ -168,7 +168,7 @@ impl Serialize for ComicStyle {
         }
         for effect in self.effects() {
             // An `Option` in the file, as `None` may be written.
-            file.serialize_field(effect.effect_type().name, &Some(effect.as_serialize()))?;
+            file.serialize_field(effect.name(), &Some(effect.as_serialize()))?;
         }
         for name in self.off.iter().filter(|_| self.partial) {
             file.serialize_field(name, &None::<()>)?;

@@ -164,7 +164,7 @@ impl ComicStyle {
 
     /// Adds an effect whose type is known at run time only.
     pub fn insert_any(&mut self, effect: Box<dyn AnyEffect>) {
-        self.off.remove(effect.effect_type().name);
+        self.off.remove(effect.name());
         self.effects.insert(effect);
     }
 
