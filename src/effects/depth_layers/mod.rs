@@ -143,7 +143,7 @@ impl Effect for DepthLayers {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.flag("OBJECTS", self.granularity == Granularity::Object);
-        variants.number("BANDS", u32::from(self.has_bands()));
+        variants.flag("BANDS", self.has_bands());
     }
 
     fn uniform(&self, _: &EffectContext) -> DepthLayersUniform {

@@ -102,7 +102,7 @@ impl Effect for SpeedLines {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("KIND", self.kind as u32);
-        variants.number("DRY", u32::from(self.dry_brush > 0.0));
+        variants.flag("DRY", self.dry_brush > 0.0);
     }
 
     fn uniform(&self, view: &EffectContext) -> SpeedLinesUniform {

@@ -206,12 +206,7 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
         names.push("LIGHTNESS_CHANGE");
     }
     if has(&names, "IN_LAYERS") {
-        names.extend([
-            "EFFECT_DEPTH_LAYERS",
-            "EFFECT_DEPTH_LAYERS_BANDS=0",
-            "MAP",
-            "DEPTH",
-        ]);
+        names.extend(["EFFECT_DEPTH_LAYERS", "MAP", "DEPTH"]);
     }
     if !has(&names, "DEPTH") {
         names.retain(|name| !matches!(*name, "SAME_SIZE" | "MULTISAMPLED" | "OBLIQUE"));
