@@ -6,13 +6,9 @@ use std::{
 };
 
 use bevy::{
-    app::App,
-    ecs::{
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Res, SystemParam},
-    },
+    ecs::system::SystemParam,
     platform::{collections::HashTable, hash::FixedHasher},
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderSystems,
         render_resource::{
@@ -23,7 +19,6 @@ use bevy::{
     },
 };
 
-/// Adds them to the render world.
 pub(crate) fn build_render(app: &mut App) {
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
         render_app
@@ -83,7 +78,6 @@ impl Bound {
     }
 }
 
-/// Makes bind groups.
 #[derive(SystemParam)]
 pub(crate) struct Binder<'w> {
     pub cache: Res<'w, PipelineCache>,

@@ -24,7 +24,6 @@ use bevy::{
     shader::ShaderDefVal,
 };
 
-/// An entry of a bind group.
 pub(crate) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
@@ -44,7 +43,6 @@ pub(crate) fn sampled(
     }
 }
 
-/// A new buffer of `size` bytes.
 pub(crate) fn buffer(device: &RenderDevice, label: &str, size: u64, usage: BufferUsages) -> Buffer {
     device.create_buffer(&BufferDescriptor {
         label: Some(label),

@@ -1,11 +1,6 @@
 //! Worlds whose origin moves.
 
-use bevy::{
-    ecs::{reflect::ReflectResource, resource::Resource},
-    log::warn_once,
-    math::DVec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::{math::DVec3, prelude::*};
 
 /// The true position of the origin of the world that is rendered, in world units, for games with a
 /// floating origin. Counts as zero if a component is not finite. Default: zero.

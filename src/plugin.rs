@@ -1,9 +1,7 @@
 //! The plugin: one frame, top to bottom.
 
 use bevy::{
-    app::{App, Plugin, PreUpdate},
-    asset::AssetServer,
-    ecs::{resource::Resource, schedule::IntoScheduleConfigs},
+    prelude::*,
     render::{Render, RenderApp, RenderSystems},
 };
 
@@ -20,7 +18,7 @@ use crate::{
     style::StylePlugin,
 };
 
-/// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with an
+/// Adds comics stylization: every [`Camera3d`] with an
 /// effect is drawn as a comic.
 ///
 /// It may be added before or after Bevy's `DefaultPlugins`.

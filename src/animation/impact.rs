@@ -1,22 +1,9 @@
 //! Impact frames: for a few drawings a camera shows two tones and focus lines.
 
 use bevy::{
-    camera::{Camera, NormalizedRenderTarget, RenderTarget},
-    color::Color,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        event::EntityEvent,
-        lifecycle::Remove,
-        observer::On,
-        query::With,
-        reflect::ReflectResource,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
-    },
-    log::{debug, warn_once},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    time::{Real, Time},
+    camera::{NormalizedRenderTarget, RenderTarget},
+    ecs::system::SystemParam,
+    prelude::*,
     window::PrimaryWindow,
 };
 
@@ -109,7 +96,6 @@ impl Impact {
         }
     }
 
-    /// The effects of one drawing.
     fn effects(&self, drawing: u32, reduced: bool) -> Vec<Box<dyn AnyEffect>> {
         let exchanged = self.alternate && drawing % 2 == 1;
         let tones = if reduced {
@@ -327,7 +313,6 @@ pub(super) fn keep_flashes(
     }
 }
 
-/// Draws the impacts that are shown.
 pub(super) fn run_impacts(
     mut cameras: Query<(Entity, Option<&RenderTarget>, &mut Impacts)>,
     (mut past, targets): (ResMut<PastFlashes>, Targets),

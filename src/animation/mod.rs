@@ -19,7 +19,6 @@ use impact::{keep_flashes, run_impacts, start_impact};
 #[cfg(any(feature = "objects", feature = "toon"))]
 pub use stepped_animation::SteppedAnimation;
 
-/// Impacts and stepped animation.
 pub(crate) struct AnimationPlugin;
 
 impl Plugin for AnimationPlugin {

@@ -7,24 +7,11 @@
 //! it.
 
 use bevy::{
-    app::SubApp,
-    camera::Camera,
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut, Tick},
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::Children,
-        query::QueryState,
-        reflect::ReflectComponent,
-        world::{EntityRef, World},
-    },
-    light::{DirectionalLight, PointLight, SpotLight},
-    math::{Affine3A, DVec3, Vec3A},
-    mesh::{Mesh3d, skinning::SkinnedMesh},
+    ecs::{change_detection::Tick, entity::EntityHashMap},
+    math::{Affine3A, DVec3},
+    mesh::skinning::SkinnedMesh,
     pbr::PreviousGlobalTransform,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    time::Time,
-    transform::components::GlobalTransform,
+    prelude::*,
 };
 
 use crate::{
@@ -74,7 +61,6 @@ pub(super) fn hold_while_extracting(render_app: &mut SubApp) {
     });
 }
 
-/// The poses that are held.
 #[derive(Default)]
 struct Poses {
     roots: Option<QueryState<(Entity, &'static SteppedAnimation)>>,

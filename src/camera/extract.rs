@@ -1,16 +1,9 @@
 //! Copies the plans of active cameras to the render world.
 
 use bevy::{
-    camera::{Camera, Camera3d, Projection},
-    ecs::{
-        entity::{Entity, EntityHashSet},
-        query::With,
-        system::{Commands, EntityCommands, Local, Query, Res},
-    },
-    math::Vec3,
+    ecs::entity::EntityHashSet,
+    prelude::*,
     render::{Extract, sync_world::RenderEntity},
-    time::{Real, Time},
-    transform::components::GlobalTransform,
 };
 
 use super::{CameraPlan, fog::Fogs, light::Lights};
@@ -24,7 +17,7 @@ use crate::{
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::EffectTarget,
-    fused::{Plan, ViewPlan},
+    fused::{Plan, ViewPlan, set_or_remove},
     objects::{DepthWanted, IdsWanted, ObjectStyles},
     origin::WorldOrigin,
 };
@@ -83,7 +76,7 @@ pub(super) fn extract_views(
         );
         // For as long as a mesh may fade: its coming and going would queue all meshes anew.
         #[cfg(feature = "objects")]
-        let writes = asked.plan.fades || !writes.0.is_empty();
+        let writes = asked.plan.objects.fades || !writes.0.is_empty();
         #[cfg(not(feature = "objects"))]
         let writes = false;
         want_objects(&mut view, (entity, &asked.plan), writes);
@@ -128,13 +121,10 @@ fn fade_levels(
     at: Option<&GlobalTransform>,
 ) {
     let fading = at
-        .filter(|_| plan.fades && plan.needs_depth())
+        .filter(|_| plan.objects.fades && plan.needs_depth())
         .map(|at| levels.fading(at.translation(), places))
         .filter(|fading| !fading.meshes.is_empty());
-    match fading {
-        Some(fading) => view.insert(fading),
-        None => view.remove::<FadingMeshes>(),
-    };
+    set_or_remove::<FadingMeshes>(view, fading);
 }
 
 /// The world position that effects point at.
@@ -148,21 +138,15 @@ fn position_of(target: &EffectTarget, places: &Query<&GlobalTransform>) -> Optio
 fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writes: bool) {
     let wanted = IdsWanted {
         ids: plan.draws_ids(),
-        layer: plan.highlights,
+        layer: plan.objects.highlights,
         widths: plan.draws_widths(),
     };
-    if wanted.ids || wanted.layer {
-        view.insert(wanted);
-    } else {
-        view.remove::<IdsWanted>();
-    }
+    set_or_remove(view, (wanted.ids || wanted.layer).then_some(wanted));
     let can_write = plan.has_ids() && !plan.lacks.depth_copies;
-    if writes && can_write && plan.needs_depth() {
-        view.insert(DepthWanted {
-            camera,
-            normals: plan.needs_normals(),
-        });
-    } else {
-        view.remove::<DepthWanted>();
-    }
+    let writes = writes && can_write && plan.needs_depth();
+    let depth = DepthWanted {
+        camera,
+        normals: plan.needs_normals(),
+    };
+    set_or_remove(view, writes.then_some(depth));
 }

@@ -5,15 +5,17 @@ use bevy::ecs::{entity::Entity, system::SystemParam};
 use crate::lines::ViewFog;
 
 /// The distance fogs of cameras.
-#[cfg(any(feature = "objects", feature = "toon"))]
 #[derive(SystemParam)]
 pub(super) struct Fogs<'w, 's> {
+    #[cfg(any(feature = "objects", feature = "toon"))]
     fogs: bevy::ecs::system::Query<'w, 's, &'static bevy::pbr::DistanceFog>,
+    #[cfg(not(any(feature = "objects", feature = "toon")))]
+    none: std::marker::PhantomData<(&'w (), &'s ())>,
 }
 
-#[cfg(any(feature = "objects", feature = "toon"))]
 impl Fogs<'_, '_> {
     /// The fog of a camera; `None` if it has none, or one that hides nothing.
+    #[cfg(any(feature = "objects", feature = "toon"))]
     pub fn of(&self, camera: Entity) -> Option<ViewFog> {
         use bevy::{color::Alpha, math::Vec3, pbr::FogFalloff};
         let fog = self.fogs.get(camera).ok()?;
@@ -31,17 +33,9 @@ impl Fogs<'_, '_> {
             most,
         })
     }
-}
 
-/// Without the engine's materials there is no distance fog.
-#[cfg(not(any(feature = "objects", feature = "toon")))]
-#[derive(SystemParam)]
-pub(super) struct Fogs<'w, 's> {
-    none: std::marker::PhantomData<(&'w (), &'s ())>,
-}
-
-#[cfg(not(any(feature = "objects", feature = "toon")))]
-impl Fogs<'_, '_> {
+    /// Without the engine's materials there is no distance fog.
+    #[cfg(not(any(feature = "objects", feature = "toon")))]
     pub fn of(&self, _: Entity) -> Option<ViewFog> {
         let _ = self.none;
         None

@@ -1,18 +1,6 @@
 //! The light that lines follow.
 
-#[cfg(any(feature = "objects", feature = "toon"))]
-use bevy::{camera::visibility::InheritedVisibility, light::DirectionalLight};
-use bevy::{
-    ecs::{
-        component::Component,
-        query::With,
-        reflect::ReflectComponent,
-        system::{Query, SystemParam},
-    },
-    math::{Vec3, Vec3A},
-    prelude::{GlobalTransform, Transform},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::{ecs::system::SystemParam, prelude::*};
 
 /// Lines follow the light of this entity: it shines forward (along the entity's -Z), as a
 /// directional light does. See [`LineWeight::shade`](crate::lines::LineWeight::shade).

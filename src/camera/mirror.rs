@@ -2,18 +2,11 @@
 //!
 //! The engine's prepass does not heed the setting: it draws the back faces of a mirrored view, whose depth is
 //! not that of the picture.
-//!
-//! [`Camera::invert_culling`]: bevy::camera::Camera::invert_culling
 
 use bevy::{
-    ecs::{
-        query::With,
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Local, Query, ResMut},
-    },
     pbr::{MeshPipelineKey, ViewKeyPrepassCache, check_prepass_views_need_specialization},
     platform::collections::HashSet,
-    prelude::App,
+    prelude::*,
     render::{
         Render, RenderApp, RenderSystems,
         camera::DirtySpecializations,

@@ -14,25 +14,12 @@ mod warnings;
 
 use std::sync::Arc;
 
-#[cfg(feature = "objects")]
 use bevy::{
-    app::PostUpdate,
-    ecs::{change_detection::DetectChangesMut, system::ResMut},
-};
-use bevy::{
-    app::{App, Last, Plugin},
-    camera::Camera3d,
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        query::With,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res},
-        world::EntityRef,
-    },
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
-        ExtractSchedule, RenderApp,
+        RenderApp,
         renderer::{RenderAdapterInfo, RenderDevice},
     },
     window::PrimaryWindow,

@@ -1,33 +1,13 @@
 //! Cameras that draw over the picture of another camera.
 
 use bevy::{
-    app::{App, PostUpdate},
     camera::{
-        Camera, Camera3d, Camera3dDepthLoadOp, CameraOutputMode, CameraUpdateSystems,
-        ClearColorConfig, Exposure, Hdr, MsaaWriteback, Projection, RenderTarget,
+        Camera3dDepthLoadOp, CameraOutputMode, CameraUpdateSystems, Exposure, Hdr, RenderTarget,
         visibility::RenderLayers,
     },
-    color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
-    ecs::{
-        change_detection::Ref,
-        component::Component,
-        entity::Entity,
-        hierarchy::ChildOf,
-        lifecycle::Remove,
-        observer::On,
-        query::{With, Without},
-        reflect::ReflectComponent,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query},
-    },
-    prelude::{DetectChanges, DetectChangesMut},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    render::{
-        render_resource::BlendState,
-        view::{ColorGrading, Msaa},
-    },
-    transform::{TransformSystems, components::Transform},
+    prelude::*,
+    render::{render_resource::BlendState, view::ColorGrading},
 };
 
 /// The settings of a camera that draws over the finished picture of the cameras before it, and may
@@ -48,8 +28,6 @@ use bevy::{
 ///     commands.spawn((Camera3d::default(), overlay_camera(1), Outlines::default()));
 /// }
 /// ```
-///
-/// [`AlphaMode::Multiply`]: bevy::prelude::AlphaMode::Multiply
 #[must_use]
 pub fn overlay_camera(order: isize) -> Camera {
     Camera {

@@ -4,20 +4,15 @@
 use std::marker::PhantomData;
 
 use bevy::{
-    camera::{Camera, Camera3d, RenderTarget},
+    camera::RenderTarget,
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
-        component::{Component, ComponentId, Components},
-        entity::{Entity, EntityHashSet},
-        lifecycle::Insert,
-        observer::On,
-        query::With,
-        system::{Commands, EntityCommands, Query, Res},
-        world::EntityRef,
+        component::{ComponentId, Components},
+        entity::EntityHashSet,
     },
-    log::warn_once,
     platform::collections::HashMap,
-    render::{render_resource::TextureUsages, view::Msaa},
+    prelude::*,
+    render::render_resource::TextureUsages,
     window::PrimaryWindow,
 };
 
@@ -198,7 +193,6 @@ impl Request<'_> {
         }
     }
 
-    /// Whether a component of the camera requires the prepass `P`.
     fn is_required<P: Component>(&self) -> bool {
         let Some(prepass) = self.components.component_id::<P>() else {
             return false;

@@ -1,14 +1,6 @@
 //! Cameras that share a visible range.
 
-use bevy::{
-    camera::{Camera, Camera3d},
-    ecs::{
-        component::Component, entity::Entity, query::With, reflect::ReflectComponent,
-        system::Query, world::EntityRef,
-    },
-    log::warn_once,
-    reflect::Reflect,
-};
+use bevy::prelude::*;
 
 use crate::style::Comic;
 

@@ -1,13 +1,8 @@
 //! Cameras that draw to the picture of others.
 
 use bevy::{
-    camera::{
-        Camera, Camera3d, Camera3dDepthLoadOp, ClearColorConfig, NormalizedRenderTarget,
-        RenderTarget,
-    },
-    ecs::{entity::Entity, world::EntityRef},
-    log::warn_once,
-    math::URect,
+    camera::{Camera3dDepthLoadOp, NormalizedRenderTarget, RenderTarget},
+    prelude::*,
 };
 
 use crate::{

@@ -1,16 +1,8 @@
 //! Warnings about cameras, each logged once.
 
 use bevy::{
-    camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, RenderTarget},
-    color::Alpha,
-    ecs::{
-        entity::Entity,
-        query::With,
-        reflect::AppTypeRegistry,
-        system::{Query, Res},
-        world::EntityRef,
-    },
-    log::warn_once,
+    camera::{CameraOutputMode, RenderTarget},
+    prelude::*,
 };
 
 use super::CameraPlan;

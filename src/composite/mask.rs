@@ -1,9 +1,6 @@
 //! Which pixels the effects of a camera change.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 
 /// On a camera that draws over the picture of another camera: which pixels its effects change.
 ///
@@ -18,8 +15,6 @@ pub enum StyleMask {
     /// As [`Own`](Self::Own), if the camera clears no color ([`ClearColorConfig::None`]) and draws
     /// over an active camera of lower order that has effects; otherwise as
     /// [`Picture`](Self::Picture).
-    ///
-    /// [`ClearColorConfig::None`]: bevy::camera::ClearColorConfig::None
     #[default]
     Auto,
     /// The whole picture.

@@ -3,14 +3,7 @@
 
 mod mask;
 
-use bevy::{
-    app::{App, Plugin},
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-    shader::load_shader_library,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType, shader::load_shader_library};
 
 use crate::settings::{FieldRange, clamp_or_default};
 
@@ -32,12 +25,6 @@ impl Default for StyleWeight {
     }
 }
 
-impl StyleWeight {
-    pub(crate) fn sanitized(self) -> f32 {
-        clamp_or_default(self.0, 1.0, 0.0, 1.0)
-    }
-}
-
 /// Shows the original picture left of a vertical line, and the styled picture right
 /// of it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -52,12 +39,6 @@ pub struct SplitView {
 impl Default for SplitView {
     fn default() -> Self {
         Self { at: 0.5 }
-    }
-}
-
-impl SplitView {
-    pub(crate) fn sanitized(self) -> f32 {
-        clamp_or_default(self.at, 0.5, 0.0, 1.0)
     }
 }
 
@@ -152,8 +133,8 @@ impl Default for Composite {
 impl Composite {
     pub fn new(weight: Option<&StyleWeight>, split: Option<&SplitView>) -> Self {
         Self {
-            weight: weight.copied().unwrap_or_default().sanitized(),
-            split: split.map_or(0.0, |split| split.sanitized()),
+            weight: weight.map_or(1.0, |weight| clamp_or_default(weight.0, 1.0, 0.0, 1.0)),
+            split: split.map_or(0.0, |split| clamp_or_default(split.at, 0.5, 0.0, 1.0)),
         }
     }
 

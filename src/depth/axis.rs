@@ -1,6 +1,6 @@
 //! The depth map as a function of distance.
 
-use bevy::{camera::Projection, math::Mat4};
+use bevy::prelude::*;
 
 use super::{DepthMap, ProjectionKind, frame::DepthProjection};
 
@@ -24,7 +24,7 @@ enum Scale {
 impl DepthAxis {
     /// The axis of a camera's map.
     ///
-    /// `clip_from_view` is [`Camera::clip_from_view`](bevy::camera::Camera::clip_from_view),
+    /// `clip_from_view` is [`Camera::clip_from_view`],
     /// `projection` the camera's component, if it has one, and `visible` the distances of the near
     /// and the far end of the visible range, such as
     /// [`DepthHistogram::drawn`](super::DepthHistogram::drawn). Returns `None` if the map depends
@@ -113,10 +113,6 @@ impl DepthAxis {
 
 #[cfg(test)]
 mod tests {
-    use bevy::{
-        camera::{OrthographicProjection, PerspectiveProjection, Projection},
-        math::Mat4,
-    };
 
     use super::*;
     use crate::DepthMapping;

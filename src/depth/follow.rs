@@ -1,31 +1,20 @@
-//! The compute pass that smooths the visible range: its uniform, its state, its pipeline.
+//! What the pass reads and keeps that smooths the visible range.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    ecs::resource::Resource,
     math::UVec2,
     render::{
-        render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
-            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor, ShaderStages,
-            ShaderType, SpecializedComputePipeline,
-            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
-        },
+        render_resource::{BindingResource, Buffer, BufferUsages, CommandEncoder, ShaderType},
         renderer::RenderDevice,
     },
-    shader::Shader,
 };
 
 use super::{
     DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
     view::RANGE_SIZE,
 };
-use crate::{
-    bind_groups::Binder,
-    gpu::{buffer, compute_pass, entry},
-};
+use crate::gpu::buffer;
 
 /// Bits of [`SmoothingUniform::flags`], as in `level.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
@@ -197,85 +186,25 @@ impl ViewSmoothing {
         );
     }
 
-    /// Records the smoothing of this frame. `found` holds the keys of the reduction.
-    pub fn record(
-        &self,
-        encoder: &mut CommandEncoder,
-        binder: &Binder,
-        pipeline: &ComputePipeline,
-        (uniforms, found): (BindingResource, &Buffer),
-    ) {
-        let mut entries = vec![
-            entry(0, uniforms),
-            entry(1, found.as_entire_binding()),
-            entry(2, self.state.as_entire_binding()),
-            entry(3, self.drawn.as_entire_binding()),
-        ];
-        if let Some(histogram) = &self.histogram {
-            entries.push(entry(4, histogram.as_entire_binding()));
-        }
-        let layout = SmoothingPipeline::layout(self.histogram.is_some());
-        let bind_group = binder.group("comics_range_smoothing", &layout, &entries);
-        let (passed, offsets) = ((pipeline, &bind_group), [self.uniform_offset]);
-        let mut pass = compute_pass(encoder, "comics_range_smoothing", passed, &offsets);
-        pass.dispatch_workgroups(1, 1, 1);
-        drop(pass);
+    /// What the pass binds. `found` holds the keys of the reduction.
+    pub fn bound<'a>(
+        &'a self,
+        uniforms: BindingResource<'a>,
+        found: &'a Buffer,
+    ) -> Vec<BindingResource<'a>> {
+        let buffers = [found, &self.state, &self.drawn];
+        let buffers = buffers.into_iter().chain(&self.histogram);
+        let buffers = buffers.map(|buffer| buffer.as_entire_binding());
+        [uniforms].into_iter().chain(buffers).collect()
+    }
+
+    /// Notes that the pass of this frame was recorded.
+    pub fn recorded(&self) {
         // A locked range ignores a cut; smoothing starts anew when it is unlocked.
         if !self.locked {
             self.snap.store(false, Ordering::Relaxed);
         }
         self.reset.store(false, Ordering::Relaxed);
-    }
-}
-
-#[derive(Resource)]
-pub(crate) struct SmoothingPipeline {
-    shader: Handle<Shader>,
-}
-
-impl SmoothingPipeline {
-    pub fn new(assets: &AssetServer) -> Self {
-        Self {
-            shader: load_embedded_asset!(assets, "smoothing.wgsl"),
-        }
-    }
-
-    fn layout(histogram: bool) -> BindGroupLayoutDescriptor {
-        let mut entries = BindGroupLayoutEntries::sequential(
-            ShaderStages::COMPUTE,
-            (
-                uniform_buffer::<SmoothingUniform>(true),
-                storage_buffer_read_only_sized(false, None),
-                storage_buffer_sized(false, None),
-                storage_buffer_sized(false, None),
-            ),
-        )
-        .to_vec();
-        if histogram {
-            entries
-                .push(storage_buffer_read_only_sized(false, None).build(4, ShaderStages::COMPUTE));
-        }
-        BindGroupLayoutDescriptor::new("comics_range_smoothing", &entries)
-    }
-}
-
-impl SpecializedComputePipeline for SmoothingPipeline {
-    /// Whether the reduction counts a histogram.
-    type Key = bool;
-
-    fn specialize(&self, histogram: Self::Key) -> ComputePipelineDescriptor {
-        ComputePipelineDescriptor {
-            label: Some("comics_range_smoothing".into()),
-            layout: vec![Self::layout(histogram)],
-            shader: self.shader.clone(),
-            shader_defs: if histogram {
-                vec!["HISTOGRAM".into()]
-            } else {
-                Vec::new()
-            },
-            entry_point: Some("follow".into()),
-            ..Default::default()
-        }
     }
 }
 

@@ -1,11 +1,6 @@
 //! A view's projection: the relation of raw depth to distance.
 
-use bevy::{
-    camera::Projection,
-    math::{Mat4, UVec4, Vec2, Vec4},
-    reflect::Reflect,
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 
 use super::{DepthMap, DepthMapping};
 
@@ -320,7 +315,6 @@ fn custom_near(clip_from_view: &Mat4) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::camera::{OrthographicProjection, PerspectiveProjection};
 
     fn finite(near: f32, far: f32) -> DepthProjection {
         let projection = Projection::Perspective(PerspectiveProjection {

@@ -3,10 +3,8 @@
 
 mod axis;
 mod bends;
-mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;
-mod middle;
 pub(crate) mod passes;
 mod ping_pong;
 pub(crate) mod plugin;
@@ -19,11 +17,9 @@ pub(crate) mod request;
 pub(crate) mod smoothing;
 pub(crate) mod surfaces;
 pub(crate) mod view;
+pub(crate) mod view_pass;
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent, resource::Resource},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use axis::DepthAxis;

@@ -1,10 +1,8 @@
 //! The pipelines that compute a view's visible range.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        system::{Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         render_resource::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
@@ -16,13 +14,10 @@ use bevy::{
 
 use super::{
     ProjectionKind,
-    borders::BorderPipeline,
-    follow::SmoothingPipeline,
-    middle::MiddlePipeline,
     ping_pong::PingPongPipeline,
     range::{RangeKey, RangePipeline, RangeShape},
-    range_of::RangeOfPipeline,
     request::RangeRequest,
+    view_pass::{QueuedPass, ViewPass, ViewPassPipeline},
 };
 
 /// The pipelines of one view's range.
@@ -31,18 +26,17 @@ pub(crate) struct RangePasses {
     /// `None` if the view takes the range of another one.
     pub reduction: Option<Reduction>,
     /// The pass that smooths or holds the range, if it runs.
-    pub smoothing: Option<CachedComputePipelineId>,
+    pub smoothing: Option<QueuedPass>,
     /// The pass that divides the depths, if it runs.
-    pub borders: Option<CachedComputePipelineId>,
+    pub borders: Option<QueuedPass>,
     /// Whether the reduction counts a histogram of the depths.
     pub counts: bool,
     /// The pass that finds the depth in the middle, if it runs.
-    pub middle: Option<CachedComputePipelineId>,
+    pub middle: Option<QueuedPass>,
     /// The pass that converts the range of another view, if it runs.
-    pub conversion: Option<CachedComputePipelineId>,
+    pub conversion: Option<QueuedPass>,
 }
 
-/// The pipelines of a reduction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Reduction {
     Compute {
@@ -55,21 +49,14 @@ pub(crate) enum Reduction {
     },
 }
 
-/// Specializes the pipelines for requests.
 #[derive(SystemParam)]
 pub(crate) struct RangePipelines<'w> {
     ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
     ping_pongs: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
-    smoothings: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
-    borders: ResMut<'w, SpecializedComputePipelines<BorderPipeline>>,
-    middles: ResMut<'w, SpecializedComputePipelines<MiddlePipeline>>,
-    middle: Res<'w, MiddlePipeline>,
-    conversions: ResMut<'w, SpecializedComputePipelines<RangeOfPipeline>>,
+    passes: ResMut<'w, SpecializedComputePipelines<ViewPassPipeline>>,
     range: Res<'w, RangePipeline>,
     ping_pong: Res<'w, PingPongPipeline>,
-    smoothing: Res<'w, SmoothingPipeline>,
-    border: Res<'w, BorderPipeline>,
-    conversion: Res<'w, RangeOfPipeline>,
+    pass: Res<'w, ViewPassPipeline>,
     adapter: Res<'w, RenderAdapterInfo>,
     device: Res<'w, RenderDevice>,
 }
@@ -109,20 +96,20 @@ impl RangePipelines<'_> {
             }
         };
         let reduction = measures.then(&mut reduction);
-        let smoothing =
-            follows.then(|| (self.smoothings).specialize(cache, &self.smoothing, counts));
-        let borders =
-            (counts && request.borders).then(|| (self.borders).specialize(cache, &self.border, ()));
+        let mut queued = |runs: bool, pass| {
+            runs.then(|| (pass, self.passes.specialize(cache, &self.pass, pass)))
+        };
+        let middle = ViewPass::Middle {
+            samples: key.samples,
+            oblique: key.oblique,
+        };
         RangePasses {
             reduction,
-            smoothing,
-            borders,
+            smoothing: queued(follows, ViewPass::Smoothing { histogram: counts }),
+            borders: queued(counts && request.borders, ViewPass::Borders),
             counts,
-            middle: (request.middle && has_compute).then(|| {
-                let key = (request.samples, key.oblique);
-                (self.middles).specialize(cache, &self.middle, key)
-            }),
-            conversion: takes.then(|| (self.conversions).specialize(cache, &self.conversion, ())),
+            middle: queued(request.middle && has_compute, middle),
+            conversion: queued(takes, ViewPass::Conversion),
         }
     }
 }

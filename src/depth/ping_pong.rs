@@ -1,10 +1,9 @@
 //! The reduction as a chain of fragment passes, as in the paper (\[CS\] 3.1).
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     core_pipeline::FullscreenShader,
-    ecs::resource::Resource,
-    math::UVec2,
+    prelude::*,
     render::{
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
@@ -17,7 +16,6 @@ use bevy::{
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
-    shader::Shader,
 };
 
 use super::range::RangeView;
@@ -183,8 +181,7 @@ fn copy_keys(encoder: &mut CommandEncoder, result: &CachedTexture, keys: &Buffer
         },
         Extent3d {
             width: 2,
-            height: 1,
-            depth_or_array_layers: 1,
+            ..default()
         },
     );
 }

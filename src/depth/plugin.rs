@@ -1,18 +1,12 @@
 //! Adds the depth service to an app.
 
 use bevy::{
-    app::{App, Plugin, PreUpdate},
-    asset::{AssetServer, embedded_asset},
+    asset::embedded_asset,
     core_pipeline::{
         FullscreenShader,
         schedule::{Core3d, Core3dSystems},
     },
-    ecs::{
-        entity::Entity,
-        query::With,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res},
-    },
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},
@@ -23,17 +17,14 @@ use bevy::{
 
 use super::{
     CameraCut, DepthHistogram, DepthMap, MaterialsReadRange, VisibleDepthRange,
-    borders::BorderPipeline,
-    follow::SmoothingPipeline,
-    middle::MiddlePipeline,
     ping_pong::PingPongPipeline,
     prepare::{RangeUniforms, ViewDepthRange, map_readbacks, prepare_view_ranges},
     range::RangePipeline,
-    range_of::RangeOfPipeline,
     readback::{RangeReadings, receive_ranges},
     reduce::reduce_depth_range,
     smoothing::count_cut,
     surfaces::use_drawn_depth,
+    view_pass::ViewPassPipeline,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
@@ -79,10 +70,7 @@ impl DepthPlugin {
             .insert_resource(readings)
             .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
-            .init_gpu_resource::<SpecializedComputePipelines<SmoothingPipeline>>()
-            .init_gpu_resource::<SpecializedComputePipelines<BorderPipeline>>()
-            .init_gpu_resource::<SpecializedComputePipelines<MiddlePipeline>>()
-            .init_gpu_resource::<SpecializedComputePipelines<RangeOfPipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<ViewPassPipeline>>()
             .init_gpu_resource::<RangeUniforms>()
             .add_systems(RenderStartup, init_pipelines)
             .add_systems(
@@ -115,8 +103,5 @@ fn init_pipelines(
     }
     commands.insert_resource(RangePipeline::new(&device, &assets));
     commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
-    commands.insert_resource(SmoothingPipeline::new(&assets));
-    commands.insert_resource(BorderPipeline::new(&assets));
-    commands.insert_resource(MiddlePipeline::new(&assets));
-    commands.insert_resource(RangeOfPipeline::new(&assets));
+    commands.insert_resource(ViewPassPipeline::new(&assets));
 }

@@ -6,14 +6,8 @@ use std::sync::{
 };
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        query::{With, Without},
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::Vec4Swizzles,
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
         render_resource::{Buffer, BufferUsages, DynamicUniformBuffer},
         renderer::{RenderDevice, RenderQueue},
@@ -22,7 +16,6 @@ use bevy::{
 };
 
 use super::{
-    borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
     frame::DepthProjection,
     passes::{RangePasses, Reduction},
@@ -34,6 +27,9 @@ use super::{
     view::RANGE_SIZE,
 };
 use crate::gpu::buffer;
+
+/// Bytes of `BorderState` in `borders.wgsl`.
+const BORDERS_SIZE: u64 = 16;
 
 /// On a view in the render world: its visible range. It stays on the view, with the
 /// state of its smoothing, as long as a range is requested.
@@ -48,7 +44,8 @@ pub(crate) struct ViewDepthRange {
     /// Textures of the ping-pong chain; empty if another reduction runs.
     pub chain: Vec<CachedTexture>,
     pub smoothing: Option<ViewSmoothing>,
-    pub borders: Option<ViewBorders>,
+    /// The state of the borders of depth layers.
+    pub borders: Option<Buffer>,
     /// The range of another view, which this one draws with.
     pub taken: Option<TakenRange>,
     /// Whether the passes of this frame were recorded.
@@ -118,7 +115,6 @@ impl ViewDepthRange {
     }
 }
 
-/// The uniforms of all views' ranges.
 #[derive(Resource)]
 pub(crate) struct RangeUniforms {
     pub views: DynamicUniformBuffer<RangeView>,
@@ -217,11 +213,13 @@ impl ViewDepthRange {
         } else {
             self.smoothing = None;
         }
-        if passes.borders.is_none() {
-            self.borders = None;
-        } else if self.borders.is_none() {
-            self.borders = Some(ViewBorders::new(device));
-        }
+        self.borders = passes.borders.map(|_| {
+            let known = self.borders.take();
+            known.unwrap_or_else(|| {
+                let label = "comics_depth_borders";
+                buffer(device, label, BORDERS_SIZE, BufferUsages::STORAGE)
+            })
+        });
         self.chain = match passes.reduction {
             Some(Reduction::PingPong { .. }) => chain_textures(textures, device, request.rect.zw()),
             Some(Reduction::Compute { .. }) | None => Vec::new(),

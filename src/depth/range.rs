@@ -1,9 +1,8 @@
 //! The reduction: nearest and farthest depth of a view, in compute shaders.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    ecs::resource::Resource,
-    math::UVec4,
+    asset::load_embedded_asset,
+    prelude::*,
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, ComputePipelineDescriptor, Sampler,
@@ -13,7 +12,6 @@ use bevy::{
         },
         renderer::{RenderAdapterInfo, RenderDevice},
     },
-    shader::Shader,
 };
 use wgpu_types::DeviceType;
 

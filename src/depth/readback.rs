@@ -7,15 +7,8 @@ use std::sync::{
 };
 
 use bevy::{
-    ecs::{
-        change_detection::DetectChangesMut,
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        reflect::ReflectComponent,
-        resource::Resource,
-        system::{Query, Res},
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
         render_resource::{Buffer, BufferUsages, CommandEncoder},
         renderer::RenderDevice,
@@ -319,7 +312,6 @@ pub(crate) fn receive_ranges(
 
 #[cfg(test)]
 mod tests {
-    use bevy::{camera::OrthographicProjection, camera::Projection, math::Mat4};
 
     use super::*;
 

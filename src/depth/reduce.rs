@@ -18,12 +18,12 @@ use bevy::{
 use super::{
     ReductionMethod,
     follow::ViewSmoothing,
-    middle::{MiddleInputs, record_middle},
     passes::Reduction,
     ping_pong::{ChainSource, record_chain},
     prepare::{RangeUniforms, ViewDepthRange},
     range::{RangeKey, RangePipeline, RangeShape},
     surfaces::{OwnSurfaces, Surfaces},
+    view_pass::{QueuedPass, ReadyPass},
 };
 use crate::{
     bind_groups::Binder,
@@ -82,13 +82,11 @@ impl Frame<'_> {
         ctx: &mut RenderContext,
     ) -> Result<Option<ReductionMethod>, SkipReason> {
         let not_ready = SkipReason::PipelineNotReady;
-        let conversion = match (self.range.passes.conversion, &self.range.taken) {
-            (Some(id), Some(taken)) => Some((
+        let passes = &self.range.passes;
+        let conversion = match (passes.conversion, &self.range.taken) {
+            (Some(pass), Some(taken)) => Some((
                 taken,
-                self.binder
-                    .cache
-                    .get_compute_pipeline(id)
-                    .ok_or(not_ready)?,
+                self.ready(pass)?,
                 self.uniforms.conversions.binding().ok_or(not_ready)?,
             )),
             (Some(_), None) => return Err(not_ready),
@@ -98,92 +96,94 @@ impl Frame<'_> {
         if depth.texture.sample_count() != self.range.request.samples {
             return Err(SkipReason::SampleCountMismatch);
         }
-        let view = self.uniforms.views.binding().ok_or(not_ready)?;
-        let smoothing = match (self.range.passes.smoothing, &self.range.smoothing) {
-            (Some(id), Some(smoothing)) => Some((
+        let views = self.uniforms.views.binding().ok_or(not_ready)?;
+        let smoothing = match (passes.smoothing, &self.range.smoothing) {
+            (Some(pass), Some(smoothing)) => Some((
                 smoothing,
-                self.binder
-                    .cache
-                    .get_compute_pipeline(id)
-                    .ok_or(not_ready)?,
+                self.ready(pass)?,
                 self.uniforms.smoothings.binding().ok_or(not_ready)?,
             )),
             _ => None,
         };
-        let borders = self.range.passes.borders;
-        if borders.is_some_and(|id| self.binder.cache.get_compute_pipeline(id).is_none()) {
-            return Err(not_ready);
-        }
-        let middle = match self.range.passes.middle {
-            Some(id) => Some(
-                self.binder
-                    .cache
-                    .get_compute_pipeline(id)
-                    .ok_or(not_ready)?,
-            ),
-            None => None,
-        };
+        let borders = passes.borders.map(|pass| self.ready(pass)).transpose()?;
+        let middle = passes.middle.map(|pass| self.ready(pass)).transpose()?;
         let depth = &depth.default_view;
-        let views = view.clone();
-        let method = match self.range.passes.reduction {
+        let read = (depth, views.clone());
+        let method = match passes.reduction {
             Some(Reduction::Compute {
                 shape,
                 pipeline: id,
-            }) => Some(self.dispatch((shape, id), (depth, view), pipeline, ctx)?),
+            }) => Some(self.dispatch((shape, id), read, pipeline, ctx)?),
             Some(Reduction::PingPong { first, next }) => {
-                Some(self.ping_pong((first, next), (depth, view), ctx)?)
+                Some(self.ping_pong((first, next), read, ctx)?)
             }
             None => None,
         };
-        if let Some((smoothing, pipeline, smoothings)) = smoothing {
-            let inputs = MiddleInputs {
-                depth,
-                samples: self.range.request.samples,
-                views,
-                view_offset: self.range.view_offset,
-                smoothings,
-            };
+        if let Some((smoothing, pass, uniforms)) = smoothing {
             // Without a reduction there is nothing but the middle.
-            let pipeline = method.is_some().then_some(pipeline);
-            self.follow(smoothing, (pipeline, middle), inputs, ctx);
+            let smooth = method.is_some().then_some(pass);
+            let read = (depth, views, uniforms);
+            self.follow(smoothing, [smooth, borders, middle], read, ctx);
         }
-        if let Some((taken, pipeline, uniforms)) = conversion {
-            taken.record(ctx.command_encoder(), self.binder, (pipeline, uniforms));
+        if let Some((taken, (pass, pipeline), uniforms)) = conversion {
+            let [from, drawn] = [&taken.from, &taken.drawn].map(|keys| keys.as_entire_binding());
+            let encoder = ctx.command_encoder();
+            let bound = vec![uniforms, from, drawn];
+            pass.record(encoder, (self.binder, pipeline), bound, &[taken.offset]);
             if let Some(smoothing) = &self.range.smoothing {
-                taken.keep_own(ctx.command_encoder(), &smoothing.drawn);
+                taken.keep_own(encoder, &smoothing.drawn);
             }
         }
         self.range.found.store(true, Ordering::Relaxed);
         Ok(method)
     }
 
+    fn compute_pipeline(
+        &self,
+        id: CachedComputePipelineId,
+    ) -> Result<&ComputePipeline, SkipReason> {
+        let pipeline = self.binder.cache.get_compute_pipeline(id);
+        pipeline.ok_or(SkipReason::PipelineNotReady)
+    }
+
+    fn ready(&self, (pass, id): QueuedPass) -> Result<ReadyPass<'_>, SkipReason> {
+        Ok((pass, self.compute_pipeline(id)?))
+    }
+
     /// Records what follows the depths from frame to frame: the smoothing, the borders, the middle.
     fn follow(
         &self,
         smoothing: &ViewSmoothing,
-        (pipeline, middle): (Option<&ComputePipeline>, Option<&ComputePipeline>),
-        inputs: MiddleInputs,
+        [smooth, borders, middle]: [Option<ReadyPass>; 3],
+        (depth, views, uniforms): (&TextureView, BindingResource, BindingResource),
         ctx: &mut RenderContext,
     ) {
+        let range = self.range;
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
-        let uniforms = inputs.smoothings.clone();
-        if let Some(pipeline) = pipeline {
-            let span = diagnostics.time_span(encoder, "comics_range_smoothing");
-            let read = (uniforms.clone(), &self.range.keys);
-            smoothing.record(encoder, self.binder, pipeline, read);
-            span.end(encoder);
+        let mut record =
+            |(pass, pipeline): ReadyPass, bound: Vec<BindingResource>, offsets: &[u32]| {
+                let span = diagnostics.time_span(encoder, pass.label());
+                pass.record(encoder, (self.binder, pipeline), bound, offsets);
+                span.end(encoder);
+            };
+        let offset = smoothing.uniform_offset;
+        let drawn = smoothing.drawn.as_entire_binding();
+        if let Some(pass) = smooth {
+            let bound = smoothing.bound(uniforms.clone(), &range.keys);
+            record(pass, bound, &[offset]);
+            smoothing.recorded();
         }
-        if let Some((id, borders)) = self.range.passes.borders.zip(self.range.borders.as_ref()) {
-            let span = diagnostics.time_span(encoder, "comics_depth_borders");
-            borders.record(encoder, (self.binder, id), (uniforms, smoothing));
-            span.end(encoder);
+        let counted = range.borders.as_ref().zip(smoothing.histogram.as_ref());
+        if let Some((pass, (state, histogram))) = borders.zip(counted) {
+            let [histogram, state] = [histogram, state].map(|b| b.as_entire_binding());
+            let bound = vec![uniforms.clone(), histogram, state, drawn.clone()];
+            record(pass, bound, &[offset]);
         }
-        if let Some(pipeline) = middle {
-            let span = diagnostics.time_span(encoder, "comics_middle_depth");
-            record_middle(encoder, (self.binder, pipeline), inputs, smoothing);
-            span.end(encoder);
+        if let Some(pass) = middle {
+            let bound = vec![depth.into_binding(), views, uniforms, drawn];
+            record(pass, bound, &[range.view_offset, offset]);
         }
     }
 
@@ -195,11 +195,7 @@ impl Frame<'_> {
         ctx: &mut RenderContext,
     ) -> Result<ReductionMethod, SkipReason> {
         let range = self.range;
-        let compute = self
-            .binder
-            .cache
-            .get_compute_pipeline(id)
-            .ok_or(SkipReason::PipelineNotReady)?;
+        let compute = self.compute_pipeline(id)?;
         let histogram = range.histogram();
         let key = RangeKey {
             samples: range.request.samples,

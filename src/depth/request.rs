@@ -1,9 +1,6 @@
 //! Requests for a view's visible range.
 
-use bevy::{
-    ecs::{component::Component, entity::Entity},
-    math::{UVec2, UVec4},
-};
+use bevy::prelude::*;
 
 use super::{DepthMap, RawDepth, frame::DepthProjection};
 

@@ -1,18 +1,7 @@
 //! Smooths the visible range over time, so that the picture does not flicker:
 //! settings and event. \[CS\] leaves this as future work.
 
-use bevy::{
-    camera::Camera,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        event::EntityEvent,
-        observer::On,
-        query::With,
-        system::{Commands, Query},
-    },
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, impl_sanitized};
@@ -138,6 +127,6 @@ pub(crate) fn count_cut(
         Ok(None) => {
             commands.entity(cut.entity).insert(CameraCuts(1));
         }
-        Err(_) => bevy::log::warn_once!("CameraCut: {} is not a camera", cut.entity),
+        Err(_) => warn_once!("CameraCut: {} is not a camera", cut.entity),
     }
 }

@@ -7,11 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        system::{Commands, Query, Res},
-    },
+    prelude::*,
     render::{
         render_resource::{CachedRenderPipelineId, TextureUsages},
         renderer::RenderAdapterInfo,

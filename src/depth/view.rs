@@ -1,9 +1,6 @@
 //! Viewport, depth texture and depth map of a view, as shaders read them.
 
-use bevy::{
-    math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 
 use super::{DepthFrame, RawDepth};
 

@@ -2,11 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bevy::ecs::{
-    entity::{Entity, EntityHashMap},
-    resource::Resource,
-    system::{Res, ResMut},
-};
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
 
 use super::{CameraStages, ComicsDiagnostics, ComicsStage, StageOutcome};
 

@@ -4,14 +4,7 @@ mod ledger;
 
 use std::{borrow::Cow, fmt};
 
-use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        reflect::ReflectResource,
-        resource::Resource,
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
 
 pub use crate::composite::DebugView;
 pub(crate) use ledger::{StageLedger, publish_ledger, read_ledger};

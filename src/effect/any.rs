@@ -11,9 +11,11 @@ use serde::Deserialize;
 
 use super::{
     AffectedArea, Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants,
-    blend,
 };
-use crate::lines::{LineModifiers, Outlines};
+use crate::{
+    lines::{LineModifiers, Outlines},
+    settings::{crossfade, crossfade_weight},
+};
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
 /// lists of effects and tools use it.
@@ -163,6 +165,12 @@ impl<E: Effect> AnyEffect for E {
     }
 }
 
+impl dyn AnyEffect {
+    pub(crate) fn name(&self) -> &'static str {
+        self.effect_type().name
+    }
+}
+
 impl Clone for Box<dyn AnyEffect> {
     fn clone(&self) -> Self {
         (**self).boxed()
@@ -278,6 +286,8 @@ fn read<E: Effect>(
     Ok(effect.map(|effect| Box::new(effect) as Box<dyn AnyEffect>))
 }
 
+/// If only one side has the effect, it fades. If the depth map is `remapped`, the part that depends
+/// on it fades out until half time, and in again.
 fn blended<E: Effect>(
     a: Option<&dyn AnyEffect>,
     b: Option<&dyn AnyEffect>,
@@ -285,6 +295,14 @@ fn blended<E: Effect>(
     remapped: bool,
 ) -> Option<Box<dyn AnyEffect>> {
     let typed = |effect: Option<&dyn AnyEffect>| effect?.as_any().downcast_ref::<E>().cloned();
-    let effect = blend::blend(typed(a), typed(b), t, remapped)?;
-    Some(Box::new(effect))
+    let (a, b) = (typed(a), typed(b));
+    // Where a mode changes, the effect has no strength at half time anyway.
+    let same_modes = |(a, b): (&E, &E)| a.same_modes(b);
+    let fades_map = remapped && a.as_ref().zip(b.as_ref()).is_none_or(same_modes);
+    let effect = crossfade(a, b, t, E::faded, E::mixed, E::same_modes)?;
+    Some(Box::new(if fades_map {
+        effect.map_faded(crossfade_weight(t))
+    } else {
+        effect
+    }))
 }

@@ -143,47 +143,6 @@ fn part_in_span(half: f32, by: i32, span: Span) -> f32 {
     return select(0.0, part_of_box(half, by), by >= span.first && by <= span.last);
 }
 
-// Adds two pixels of a row, on both sides of its middle.
-fn across_added(sum: Means, pixel: vec2<i32>, by: i32, span: Span) -> Means {
-    let left = means_of(load_inside(pixel - vec2(by, 0)));
-    let right = means_of(load_inside(pixel + vec2(by, 0)));
-    let before = added(sum, left, part_in_span(sum.half, -by, span));
-    return added(before, right, part_in_span(sum.half, by, span));
-}
-
-// The means of a row of pixels around one. BOX_REACH: no row reaches farther than
-// is defined, and most do; loops are slow on CPU adapters.
-fn mean_across(pixel: vec2<i32>, half: f32) -> Means {
-    let span = span_around(pixel.x, half, view.viewport.x, view.viewport.z);
-#ifdef BOX_REACH
-    var sum = added(no_means(half), means_of(load_inside(pixel)), 1.0);
-#ifdef REACHES_ONE
-    sum = across_added(sum, pixel, 1, span);
-#endif
-#ifdef REACHES_TWO
-    sum = across_added(sum, pixel, 2, span);
-#endif
-#ifdef REACHES_THREE
-    sum = across_added(sum, pixel, 3, span);
-#endif
-#ifdef REACHES_FOUR
-    sum = across_added(sum, pixel, 4, span);
-#endif
-#ifdef REACHES_FIVE
-    sum = across_added(sum, pixel, 5, span);
-#endif
-#ifdef REACHES_SIX
-    sum = across_added(sum, pixel, 6, span);
-#endif
-#else
-    var sum = no_means(half);
-    for (var i = span.first; i <= span.last; i++) {
-        sum = added(sum, means_of(load_inside(pixel + vec2(i, 0))), part_of_box(half, i));
-    }
-#endif
-    return divided(sum);
-}
-
 // The means of the texture at a pixel of the render target, which must be inside the viewport.
 fn load_means(pixel: vec2<i32>) -> Means {
 #ifdef BOX_STATISTICS
@@ -193,41 +152,54 @@ fn load_means(pixel: vec2<i32>) -> Means {
 #endif
 }
 
-// Adds two rows of a column.
-fn down_added(sum: Means, pixel: vec2<i32>, by: i32, span: Span) -> Means {
-    let above = load_means(pixel - vec2(0, by));
-    let below = load_means(pixel + vec2(0, by));
-    let before = added(sum, above, part_in_span(sum.half, -by, span));
-    return added(before, below, part_in_span(sum.half, by, span));
+// What a pass averages, `by` steps beside a pixel: the pixels of a row, or with BOX_STATISTICS_DOWN the
+// rows of a column.
+fn means_beside(pixel: vec2<i32>, by: i32) -> Means {
+#ifdef BOX_STATISTICS_DOWN
+    return load_means(pixel + vec2(0, by));
+#else
+    return means_of(load_inside(pixel + vec2(by, 0)));
+#endif
 }
 
-// The means of a column of rows around a pixel.
-fn mean_down(pixel: vec2<i32>, half: f32) -> Means {
+// Adds two of these, on both sides of the middle.
+fn both_added(sum: Means, pixel: vec2<i32>, by: i32, span: Span) -> Means {
+    let before = added(sum, means_beside(pixel, -by), part_in_span(sum.half, -by, span));
+    return added(before, means_beside(pixel, by), part_in_span(sum.half, by, span));
+}
+
+// The means of a row of pixels around one, or of a column of rows. BOX_REACH: none reaches farther than
+// is defined, and most do; loops are slow on CPU adapters.
+fn mean_along(pixel: vec2<i32>, half: f32) -> Means {
+#ifdef BOX_STATISTICS_DOWN
     let span = span_around(pixel.y, half, view.viewport.y, view.viewport.w);
+#else
+    let span = span_around(pixel.x, half, view.viewport.x, view.viewport.z);
+#endif
 #ifdef BOX_REACH
-    var sum = added(no_means(half), load_means(pixel), 1.0);
+    var sum = added(no_means(half), means_beside(pixel, 0), 1.0);
 #ifdef REACHES_ONE
-    sum = down_added(sum, pixel, 1, span);
+    sum = both_added(sum, pixel, 1, span);
 #endif
 #ifdef REACHES_TWO
-    sum = down_added(sum, pixel, 2, span);
+    sum = both_added(sum, pixel, 2, span);
 #endif
 #ifdef REACHES_THREE
-    sum = down_added(sum, pixel, 3, span);
+    sum = both_added(sum, pixel, 3, span);
 #endif
 #ifdef REACHES_FOUR
-    sum = down_added(sum, pixel, 4, span);
+    sum = both_added(sum, pixel, 4, span);
 #endif
 #ifdef REACHES_FIVE
-    sum = down_added(sum, pixel, 5, span);
+    sum = both_added(sum, pixel, 5, span);
 #endif
 #ifdef REACHES_SIX
-    sum = down_added(sum, pixel, 6, span);
+    sum = both_added(sum, pixel, 6, span);
 #endif
 #else
     var sum = no_means(half);
     for (var i = span.first; i <= span.last; i++) {
-        sum = added(sum, load_means(pixel + vec2(0, i)), part_of_box(half, i));
+        sum = added(sum, means_beside(pixel, i), part_of_box(half, i));
     }
 #endif
     return divided(sum);

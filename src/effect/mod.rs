@@ -3,7 +3,6 @@
 //! `docs/your-own-effect.md` is a guide with a complete example.
 
 mod any;
-mod blend;
 mod context;
 pub(crate) mod names;
 mod needs;

@@ -63,7 +63,6 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
     }
 }
 
-/// Whether a module defines this import path.
 fn defines(source: &str, path: &str) -> bool {
     get_preprocessor_data(source).0.as_deref() == Some(path)
 }

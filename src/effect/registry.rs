@@ -5,12 +5,7 @@ use std::{
     sync::{Arc, PoisonError, RwLock},
 };
 
-use bevy::{
-    app::{App, Plugin},
-    ecs::resource::Resource,
-    log::error,
-    reflect::{ReflectDeserialize, ReflectSerialize},
-};
+use bevy::prelude::*;
 
 use super::{Effect, EffectType, names};
 

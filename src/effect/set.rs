@@ -15,7 +15,7 @@ impl EffectSet {
 
     /// The effect with this name, if the set contains it.
     pub fn by_name(&self, name: &str) -> Option<&dyn AnyEffect> {
-        self.iter().find(|effect| effect.effect_type().name == name)
+        self.iter().find(|effect| effect.name() == name)
     }
 
     /// The effect of this type, if the set contains it.
@@ -34,8 +34,8 @@ impl EffectSet {
     /// Adds an effect, or replaces the one with the same name.
     pub fn insert(&mut self, effect: Box<dyn AnyEffect>) {
         let key = |e: &dyn AnyEffect| -> EffectStage { e.effect_type().stage };
-        let name = effect.effect_type().name;
-        if let Some(known) = self.0.iter_mut().find(|e| e.effect_type().name == name) {
+        let name = effect.name();
+        if let Some(known) = self.0.iter_mut().find(|e| e.name() == name) {
             *known = effect;
             return;
         }
@@ -47,10 +47,7 @@ impl EffectSet {
 
     /// Removes and returns the effect with this name.
     pub fn remove(&mut self, name: &str) -> Option<Box<dyn AnyEffect>> {
-        let at = self
-            .0
-            .iter()
-            .position(|effect| effect.effect_type().name == name)?;
+        let at = self.0.iter().position(|effect| effect.name() == name)?;
         Some(self.0.remove(at))
     }
 }
@@ -60,7 +57,7 @@ impl PartialEq for EffectSet {
         self.0.len() == other.0.len()
             && self.iter().all(|effect| {
                 other
-                    .by_name(effect.effect_type().name)
+                    .by_name(effect.name())
                     .is_some_and(|theirs| effect.equals(theirs))
             })
     }

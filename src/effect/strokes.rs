@@ -1,9 +1,6 @@
 //! What strokes on surfaces look like: for the effect `Hatching` and the toon material.
 
-use bevy::{
-    math::{DVec3, IVec2, IVec4, Mat3, Vec3},
-    render::render_resource::ShaderType,
-};
+use bevy::{math::DVec3, prelude::*, render::render_resource::ShaderType};
 
 /// `Strokes` in `strokes.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]

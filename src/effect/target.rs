@@ -1,10 +1,6 @@
 //! The object that effects of a camera point at.
 
-use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
-    math::{Mat4, UVec4, Vec2, Vec3},
-    reflect::Reflect,
-};
+use bevy::prelude::*;
 
 /// On a camera: the object that effects of this camera point at, such as
 /// [`SpeedLines`](crate::SpeedLines). They follow it over the screen.

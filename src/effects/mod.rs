@@ -2,6 +2,31 @@
 //!
 //! Each effect has a folder with its settings, their packing and one WGSL function.
 
+/// The WGSL module of an effect, in the effect's folder, and the name of its struct of settings.
+macro_rules! shader {
+    ($name:literal, $settings:literal) => {
+        EffectShader {
+            path: concat!("bevy_comics::effects::", $name),
+            source: include_str!(concat!($name, ".wgsl")),
+            settings: Some($settings),
+        }
+    };
+}
+
+/// The strength of an effect is a field, which also fades it.
+macro_rules! fades_by {
+    ($field:ident) => {
+        fn strength(&self) -> f32 {
+            self.$field
+        }
+
+        fn faded(self, fraction: f32) -> Self {
+            let $field = self.$field * fraction;
+            Self { $field, ..self }
+        }
+    };
+}
+
 mod abstraction;
 mod black_flats;
 mod color_harmony;

@@ -21,7 +21,7 @@ fn effects() -> Vec<Box<dyn AnyEffect>> {
 const SEED: (&str, usize) = ("speed_lines", 13);
 
 fn assert_packed(effect: &dyn AnyEffect, view: &EffectContext) {
-    let name = effect.effect_type().name;
+    let name = effect.name();
     for (k, word) in effect.uniform_bytes(view).chunks_exact(4).enumerate() {
         let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
         let is_right = x.is_finite() || (name, k) == SEED;

@@ -7,12 +7,7 @@ use std::sync::Arc;
 
 use bevy::{
     camera::MainPassResolutionOverride,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{Or, With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
+    prelude::*,
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::PipelineCache,
@@ -146,7 +141,7 @@ fn report(
     let missing = StageOutcome::Skipped(SkipReason::NoDepthPrepass);
     let lacks_depth = wanted.needs_depth() && scene.depth.is_none();
     if lacks_depth {
-        bevy::log::warn_once!(
+        warn_once!(
             "camera {camera} has no depth prepass: its effects that read depth are left out"
         );
     }

@@ -7,7 +7,6 @@ use bevy::{
 
 use crate::lines::{FindPass, LinePasses};
 
-/// Whether a pipeline of lines is still compiling.
 pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
     let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
     let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));

@@ -10,7 +10,6 @@ use bevy::{
 
 use crate::depth::surfaces::prepass_is_empty;
 
-/// What a device lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct DeviceLacks {
     pub compute_shaders: bool,

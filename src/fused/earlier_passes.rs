@@ -2,13 +2,7 @@
 //! effects that read the picture at other places, and means over boxes or numbers beside them.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::With,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::UVec2,
+    prelude::*,
     render::{
         render_resource::{
             LoadOp, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
@@ -109,7 +103,6 @@ pub(super) fn described<'a>(
     }
 }
 
-/// The passes before the last one.
 pub(super) struct EarlierPasses<'a>(Vec<EarlierPass<'a>>);
 
 struct EarlierPass<'a> {

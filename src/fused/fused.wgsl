@@ -17,7 +17,7 @@
 #import bevy_comics::effect::color::{
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
-#import bevy_comics::effect::box_statistics::{half_side, mean_across, mean_down, packed_means}
+#import bevy_comics::effect::box_statistics::{half_side, mean_along, packed_means}
 #import bevy_comics::effect::aux_scalar::{load_aux_scalar, packed_number}
 #import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
@@ -215,11 +215,7 @@ fn half_box(pixel: vec2<i32>) -> f32 {
 fn means(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     set_view(comics.view);
     let pixel = vec2<i32>(position.xy) + comics.view.viewport.xy;
-#ifdef BOX_STATISTICS_DOWN
-    return packed_means(mean_down(pixel, half_box(pixel)));
-#else
-    return packed_means(mean_across(pixel, half_box(pixel)));
-#endif
+    return packed_means(mean_along(pixel, half_box(pixel)));
 }
 #endif
 

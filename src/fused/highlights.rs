@@ -1,12 +1,8 @@
 //! Turns the plan of a view into requests for the lines of its highlighted objects.
 
 use bevy::{
-    camera::CompositingSpace,
-    ecs::{
-        entity::Entity,
-        hierarchy::ChildOf,
-        system::{Commands, Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
@@ -51,7 +47,7 @@ impl HighlightPipelines<'_> {
         (scene, uniform): (&Scene, ViewUniform),
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Option<HighlightRequests> {
-        let (size, samples) = scene.depth.filter(|_| plan.highlights)?;
+        let (size, samples) = scene.depth.filter(|_| plan.objects.highlights)?;
         let widest = self.highlights.styles.max_width();
         let request = request(view, (scene, uniform), widest)?;
         let passes = lines.get(cache, &request);

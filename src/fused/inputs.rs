@@ -22,6 +22,7 @@ use crate::{
         surfaces::{SurfaceParts, Surfaces},
     },
     diagnostics::SkipReason,
+    effect::Needs,
     gpu::entry,
     lines::ViewLines,
     objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
@@ -91,6 +92,7 @@ pub(super) fn entries<'a>(
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
     let not_ready = SkipReason::PipelineNotReady;
+    let needs = |need| key.needs.contains(need);
     let surfaces = Surfaces::from(surfaces);
     let mut entries = Vec::new();
     if key.depth {
@@ -115,15 +117,15 @@ pub(super) fn entries<'a>(
         let styles = object_styles.buffer().ok_or(not_ready)?;
         entries.push(entry(6, styles.as_entire_binding()));
     }
-    if key.normals() {
+    if needs(Needs::NORMALS) {
         let normal = surfaces.normal().ok_or(not_ready)?;
         entries.push(entry(7, sampled(normal, key.samples)?));
     }
-    if key.ids() {
+    if needs(Needs::IDS) {
         let ids = ids.ok_or(not_ready)?;
         entries.push(entry(8, (&ids.view).into_binding()));
     }
-    if key.object_depths() {
+    if needs(Needs::OBJECT_DEPTHS) {
         let depths = depths.ok_or(not_ready)?;
         entries.push(entry(
             OBJECT_DEPTHS_BINDING,
@@ -137,7 +139,7 @@ pub(super) fn entries<'a>(
         }
         entries.push(entry(DRAWN_DEPTH_BINDING, depth.view().into_binding()));
     }
-    if key.blue_noise() {
+    if needs(Needs::BLUE_NOISE) {
         let tile = blue_noise.view().ok_or(not_ready)?;
         entries.push(entry(11, tile.into_binding()));
     }

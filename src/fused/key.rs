@@ -53,7 +53,7 @@ pub(crate) struct StylizeKey {
     oblique: bool,
     effects: Vec<&'static str>,
     variants: Variants,
-    needs: Needs,
+    pub needs: Needs,
     /// Whether the depth texture is bound.
     pub depth: bool,
     visible_range: bool,
@@ -103,7 +103,7 @@ impl StylizeKey {
         let lines = needs.intersects(Needs::LINES);
         let mut variants = Variants::default();
         for effect in plan.drawn() {
-            variants.effect = effect.effect_type().name;
+            variants.effect = effect.name();
             effect.any_variants(context, &mut variants);
         }
         variants.effect = "";
@@ -114,7 +114,7 @@ impl StylizeKey {
             // samples.
             samples: inputs.samples.filter(|_| reads_pixels).unwrap_or(1),
             oblique: depth && inputs.oblique,
-            effects: plan.drawn().map(|e| e.effect_type().name).collect(),
+            effects: plan.drawn().map(|e| e.name()).collect(),
             variants,
             needs,
             depth,
@@ -127,11 +127,11 @@ impl StylizeKey {
                     .line_modifiers(context)
                     .layers
                     .is_some_and(|p| p.has_colors()),
-            object_styles: (lines && plan.object_styles)
-                || plan.unstyled
+            object_styles: (lines && plan.objects.any)
+                || plan.objects.unstyled
                 || needs.contains(Needs::OBJECT_ANCHORS),
-            unstyled_colors: plan.unstyled,
-            unstyled_print: plan.unstyled,
+            unstyled_colors: plan.objects.unstyled,
+            unstyled_print: plan.objects.unstyled,
             own_pixels: plan.own_pixels,
             mask_reach: mask_reach(plan, inputs.widest_object, context),
             beyond: plan.beyond,
@@ -203,9 +203,7 @@ impl StylizeKey {
                 None => Read::Picture,
             },
             inside: self.inside || pass.is_earlier,
-            left_out: others
-                .map(|(_, effect)| effect.effect_type().name)
-                .collect(),
+            left_out: others.map(|(_, effect)| effect.name()).collect(),
             ..self.clone()
         }
     }
@@ -226,7 +224,7 @@ impl StylizeKey {
         effect: &'static str,
         context: &EffectContext,
     ) -> [Self; 2] {
-        let found = plan.drawn().find(|e| e.effect_type().name == effect);
+        let found = plan.drawn().find(|e| e.name() == effect);
         let reach = found.and_then(|effect| effect.any_max_radius(context));
         let boxes = Boxes { effect, reach };
         let rows = (Drawn::Across(boxes), Read::Picture);
@@ -241,11 +239,6 @@ impl StylizeKey {
             reads,
             ..self.clone()
         })
-    }
-
-    /// The entry point of the shader.
-    pub fn entry_point(&self) -> &'static str {
-        self.draws.entry_point()
     }
 
     /// The key of the same pass with another drawn area.
@@ -270,11 +263,6 @@ impl StylizeKey {
         !self.left_out.contains(&effect)
     }
 
-    /// Whether lines are read at any place.
-    pub fn reads_lines_anywhere(&self) -> bool {
-        self.needs.contains(Needs::LINES_ANYWHERE)
-    }
-
     /// Whether a debug view replaces the picture.
     pub fn is_view(&self) -> bool {
         self.view.is_some()
@@ -285,32 +273,10 @@ impl StylizeKey {
         self.surface || self.edge_styles || self.layer_ink
     }
 
-    pub fn normals(&self) -> bool {
-        self.needs.contains(Needs::NORMALS)
-    }
-
-    pub fn ids(&self) -> bool {
-        self.needs.contains(Needs::IDS)
-    }
-
-    /// Whether the borders between near, middle and far are read.
-    fn borders(&self) -> bool {
-        self.needs.contains(Needs::DEPTH_BORDERS)
-    }
-
-    /// Whether the depth in the middle of the view is read.
-    fn middle(&self) -> bool {
-        self.needs.contains(Needs::MIDDLE_DEPTH)
-    }
-
     /// Whether the buffer of the visible range is bound, which holds the borders and the middle too.
     pub fn reads_range(&self) -> bool {
-        self.visible_range || self.borders() || self.middle()
-    }
-
-    /// Whether the depths of objects in the depth map are read.
-    pub fn object_depths(&self) -> bool {
-        self.needs.contains(Needs::OBJECT_DEPTHS)
+        let beside = Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH;
+        self.visible_range || self.needs.intersects(beside)
     }
 
     /// Whether the depth of the main pass is read.
@@ -345,29 +311,25 @@ impl StylizeKey {
         found
     }
 
-    pub fn blue_noise(&self) -> bool {
-        self.needs.contains(Needs::BLUE_NOISE)
-    }
-
     pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
         let space = match self.space {
             CompositingSpace::Linear => None,
             CompositingSpace::Srgb => Some("STORED_SRGB"),
             CompositingSpace::Oklab => Some("STORED_OKLAB"),
         };
-        let needs = self.needs;
+        let needs = |need| self.needs.contains(need);
         let number = |name: &str, value| ShaderDefVal::UInt(name.into(), value);
         [
             (self.depth, "DEPTH"),
-            (needs.contains(Needs::MAP), "MAP"),
+            (needs(Needs::MAP), "MAP"),
             (self.visible_range, "VISIBLE_RANGE"),
-            (self.borders(), "DEPTH_BORDERS"),
-            (self.middle(), "MIDDLE_DEPTH"),
+            (needs(Needs::DEPTH_BORDERS), "DEPTH_BORDERS"),
+            (needs(Needs::MIDDLE_DEPTH), "MIDDLE_DEPTH"),
             (self.oblique, "OBLIQUE"),
-            (self.normals(), "NORMALS"),
-            (self.ids(), "OBJECT_IDS"),
+            (needs(Needs::NORMALS), "NORMALS"),
+            (needs(Needs::IDS), "OBJECT_IDS"),
             (self.lines, "LINES"),
-            (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (needs(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.reads_owners(), "LINE_OWNERS"),
             (
                 self.surface && self.area != DrawnArea::Base,
@@ -380,9 +342,9 @@ impl StylizeKey {
             (self.layer_ink, "IN_LAYERS"),
             (self.layer_ink && self.area != DrawnArea::Base, "LAYER_INK"),
             (self.object_styles, "OBJECT_STYLES"),
-            (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
-            (self.object_depths(), "OBJECT_DEPTHS"),
-            (needs.contains(Needs::WORLD_ORIGIN), "WORLD_ORIGIN"),
+            (needs(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
+            (needs(Needs::OBJECT_DEPTHS), "OBJECT_DEPTHS"),
+            (needs(Needs::WORLD_ORIGIN), "WORLD_ORIGIN"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),
@@ -391,8 +353,8 @@ impl StylizeKey {
             (self.continued, "CONTINUED"),
             (self.is_earlier, "EARLIER_PASS"),
             (self.inside, "INSIDE"),
-            (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
-            (self.blue_noise(), "BLUE_NOISE"),
+            (needs(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
+            (needs(Needs::BLUE_NOISE), "BLUE_NOISE"),
             (self.same_size, "SAME_SIZE"),
             (self.composite, "COMPOSITE"),
             (self.area.is_overlay(), "OVERLAY"),
@@ -416,6 +378,7 @@ impl StylizeKey {
     }
 
     pub fn layout(&self) -> BindGroupLayoutDescriptor {
+        let needs = |need| self.needs.contains(need);
         let fragment = ShaderStages::FRAGMENT;
         let prepass = |binding| sampled(self.samples > 1, UNFILTERABLE).build(binding, fragment);
         let mut entries = vec![uniform_buffer_sized(false, None).build(1, fragment)];
@@ -431,12 +394,12 @@ impl StylizeKey {
             (self.lines, ink_entry()),
             (self.reads_owners(), owners_entry()),
             (self.object_styles, object_styles_entry()),
-            (self.normals(), prepass(7)),
-            (self.ids(), ids_entry(self.samples > 1)),
-            (self.object_depths(), object_depths_entry()),
+            (needs(Needs::NORMALS), prepass(7)),
+            (needs(Needs::IDS), ids_entry(self.samples > 1)),
+            (needs(Needs::OBJECT_DEPTHS), object_depths_entry()),
             (self.continued, picture.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
-            (self.blue_noise(), packed.clone().build(11, fragment)),
+            (needs(Needs::BLUE_NOISE), packed.build(11, fragment)),
             (self.reads_drawn_depth(), prepass(DRAWN_DEPTH_BINDING)),
         ];
         entries.extend(
@@ -454,7 +417,7 @@ fn mask_reach(plan: &Plan, widest_object: f32, context: &EffectContext) -> u32 {
     let lines = plan
         .lines
         .filter(|_| plan.own_pixels == Some(OwnPixels::Ids));
-    let widest = (widest_object, plan.vertex_widths);
+    let widest = (widest_object, plan.objects.widths);
     let reach = |lines: Outlines| lines.reach(context.scale_factor, widest, context.sheet);
     lines.map_or(2, |lines| reach(lines).clamp(1, 32) as u32)
 }
@@ -470,12 +433,11 @@ fn masked(plan: &Plan, context: &EffectContext) -> Vec<(&'static str, bool)> {
         .filter(|effect| effect.effect_type().stage > EffectStage::Print);
     let masked = |effect: &dyn AnyEffect| {
         let is_line = effect.any_affected_area(context) != AffectedArea::Everywhere;
-        (effect.effect_type().name, is_line)
+        (effect.name(), is_line)
     };
     later.map(masked).collect()
 }
 
-/// The shader definitions of a debug view.
 fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
     match view {
         DebugView::Effect(name) => vec![

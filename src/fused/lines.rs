@@ -51,18 +51,18 @@ pub(super) fn line_request(
 ) -> Option<LineRequest> {
     let lines = plan.lines.filter(|_| plan.draws());
     let settings = lines.or(jumps.map(|_| Outlines::BARE))?;
-    let widest_object = if plan.object_styles {
+    let widest_object = if plan.objects.any {
         view.widest_object
     } else {
         0.0
     };
-    let widest = (widest_object, plan.vertex_widths);
+    let widest = (widest_object, plan.objects.widths);
     let modifiers = plan.line_modifiers(context);
     Some(LineRequest {
         boil: settings.boil.uniform(
             view.scale_factor,
             view.time,
-            settings.widest(widest_object, plan.vertex_widths),
+            settings.widest(widest_object, plan.objects.widths),
         ),
         motion: has_motion(scene),
         fog: plan.fog.then(|| fog(view, settings.fog)),
@@ -78,7 +78,7 @@ pub(super) fn line_request(
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         sections: plan.sections,
-        object_styles: plan.object_styles,
+        object_styles: plan.objects.any,
         widths: plan.draws_widths(),
         line_reach: line_reach(plan, context).unwrap_or(0.0),
         jumps,
@@ -179,7 +179,7 @@ impl Plan {
         let has_pressure = self
             .lines
             .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
-        self.has_ids() && (has_pressure || self.vertex_widths)
+        self.has_ids() && (has_pressure || self.objects.widths)
     }
 
     /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical

@@ -45,7 +45,7 @@ impl Plan {
             Input::ObjectIds => (Needs::IDS, SkipReason::NoStorageBuffers),
         };
         for planned in std::mem::take(&mut plan.effects) {
-            let name = planned.effect.effect_type().name;
+            let name = planned.effect.name();
             match planned.effect.any_without(needs) {
                 Some(effect)
                     if effect.any_strength() > 0.0 && !effect.any_needs().intersects(needs) =>
@@ -60,7 +60,7 @@ impl Plan {
                 plan.view = plan.view.filter(|v| !v.needs_depth());
                 plan.histogram = false;
                 plan.readback = false;
-                plan.unstyled = false;
+                plan.objects.unstyled = false;
                 plan.own_pixels = None;
                 plan.beyond = BeyondPrepass::Styled;
             }
@@ -70,11 +70,11 @@ impl Plan {
             Input::ObjectIds => {
                 plan.view = plan.view.filter(|v| !v.reads_ids());
                 plan.lacks.object_ids = true;
-                plan.object_styles = false;
-                plan.vertex_widths = false;
-                plan.unstyled = false;
-                plan.anchored = false;
-                plan.highlights = false;
+                plan.objects.any = false;
+                plan.objects.widths = false;
+                plan.objects.unstyled = false;
+                plan.objects.anchored = false;
+                plan.objects.highlights = false;
                 plan.own_pixels = plan.own_pixels.map(|_| OwnPixels::Depth);
             }
         }

@@ -2,9 +2,8 @@
 //! effect, and writes the picture once.
 
 use bevy::{
-    asset::{AssetServer, Handle},
-    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
-    ecs::{resource::Resource, system::Res},
+    core_pipeline::FullscreenShader,
+    prelude::*,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -13,26 +12,24 @@ use bevy::{
             SpecializedRenderPipeline, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
-        view::{ViewDepthTexture, ViewTarget},
+        view::ViewTarget,
     },
-    shader::Shader,
 };
 
 use super::{
     blue_noise::BlueNoise,
     earlier_passes::{EarlierPasses, PassTextures, described},
     errors::ShaderErrors,
-    inputs::{Inputs, PassSampler, entries},
+    inputs::{Inputs, PassSampler, ViewInputs, entries},
     key::StylizeKey,
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
     bind_groups::Binder,
-    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     gpu::{attachment, entry},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
-    objects::{ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+    objects::ObjectStyleBuffer,
 };
 
 #[derive(Resource)]
@@ -70,7 +67,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.shader_defs(),
-                entry_point: Some(key.entry_point().into()),
+                entry_point: Some(key.draws.entry_point().into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
                     blend: overlay.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -95,15 +92,7 @@ pub(super) fn stylize<const PRINTS: bool>(
             &ViewFused,
             Option<&PassTextures>,
         ),
-        (
-            (
-                (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
-                Option<&ViewDepthTexture>,
-            ),
-            Option<&ViewDepthRange>,
-            Option<&ViewLines>,
-            (Option<&ViewObjectIds>, Option<&ObjectDepths>),
-        ),
+        ViewInputs<'_>,
     )>,
     (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<PassSampler>),
     blue_noise: Res<BlueNoise>,
@@ -154,7 +143,6 @@ pub(super) fn stylize<const PRINTS: bool>(
     ran(request, &ledger);
 }
 
-/// The draw calls of the pass.
 struct Draws<'a> {
     base: Option<&'a RenderPipeline>,
     pipeline: &'a RenderPipeline,
@@ -222,7 +210,7 @@ impl<'a> Draws<'a> {
 /// Reports that the pass and its effects ran.
 fn ran(request: &FusedRequest, ledger: &StageLedger) {
     for effect in request.plan.drawn() {
-        let stage = ComicsStage::Effect(effect.effect_type().name);
+        let stage = ComicsStage::Effect(effect.name());
         ledger.set(request.camera, stage, StageOutcome::Ran);
     }
     ledger.set(request.camera, ComicsStage::Stylize, StageOutcome::Ran);

@@ -77,7 +77,7 @@ fn reads(plan: &Plan, at: usize) -> Option<Reads> {
 
 /// The last effect that a debug view depends on, as a position in [`Plan::drawn`].
 fn last_shown(plan: &Plan, view: DebugView) -> usize {
-    let at = |name| plan.drawn().position(|e| e.effect_type().name == name);
+    let at = |name| plan.drawn().position(|e| e.name() == name);
     match view {
         DebugView::Effect(name) => at(name).unwrap_or(0),
         DebugView::Difference => usize::MAX,

@@ -43,23 +43,10 @@ pub(crate) struct Plan {
     pub(super) left_out: Vec<(&'static str, SkipReason)>,
     /// The lines to find.
     pub lines: Option<Outlines>,
-    /// Some object has its own line style, or no lines.
-    pub object_styles: bool,
-    /// Some mesh is divided into sections, and some because it has `MeshSections`.
-    pub any_sections: bool,
-    pub asked_sections: bool,
+    /// The components of objects that it follows.
+    pub objects: ObjectChanges,
     /// Borders of sections are creases.
     pub sections: bool,
-    /// The vertices of some mesh say how wide its lines are.
-    pub vertex_widths: bool,
-    /// The color effects leave some object alone.
-    pub unstyled: bool,
-    /// Screens follow some object.
-    pub anchored: bool,
-    /// Some object is outlined by itself.
-    pub highlights: bool,
-    /// Some mesh fades at some distance.
-    pub fades: bool,
     /// Lines fade into the camera's distance fog.
     pub fog: bool,
     pub lacks: DeviceLacks,
@@ -98,14 +85,7 @@ impl Plan {
                 .copied()
                 .unwrap_or_default()
                 .sanitized(),
-            object_styles: objects.any,
-            any_sections: objects.sections,
-            asked_sections: objects.asked_sections,
-            vertex_widths: objects.widths,
-            unstyled: objects.unstyled,
-            anchored: objects.anchored,
-            highlights: objects.highlights,
-            fades: objects.fades,
+            objects,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
@@ -121,7 +101,8 @@ impl Plan {
             ..Self::default()
         };
         let asked = plan.collect(camera, shown, types);
-        if !(asked || plan.highlights || plan.readback || plan.histogram || plan.view.is_some()) {
+        if !(asked || plan.objects.highlights || plan.readback || plan.histogram || plan.view.is_some())
+        {
             return None;
         }
         plan.show(types);
@@ -145,7 +126,7 @@ impl Plan {
         types: &[&'static EffectType],
     ) -> bool {
         let of_camera = |effect: &&EffectType| {
-            let instead = shown.iter().find(|s| s.effect_type().name == effect.name);
+            let instead = shown.iter().find(|s| s.name() == effect.name);
             let own = || (effect.get)(camera).map(AnyEffect::any_sanitized);
             instead.cloned().or_else(own)
         };
@@ -162,7 +143,7 @@ impl Plan {
             let found = own.or_else(|| {
                 let name = effect.name;
                 let mut implied = implied.iter();
-                implied.find(|i| i.effect_type().name == name).cloned()
+                implied.find(|i| i.name() == name).cloned()
             });
             match found {
                 Some(found) if found.any_strength() > 0.0 => self.effects.push(Planned {
@@ -186,19 +167,13 @@ impl Plan {
         let DebugView::Effect(name) = view else {
             return;
         };
-        if self
-            .effects
-            .iter()
-            .any(|p| p.effect.effect_type().name == name)
-        {
+        if self.effects.iter().any(|p| p.effect.name() == name) {
             return;
         }
         if let Some(effect) = types.iter().find(|effect| effect.name == name) {
             let at = |name| types.iter().position(|t| t.name == name);
             let own = at(name);
-            let before = self
-                .effects
-                .partition_point(|p| at(p.effect.effect_type().name) < own);
+            let before = self.effects.partition_point(|p| at(p.effect.name()) < own);
             let effect = (effect.default)();
             self.effects.insert(
                 before,
@@ -245,14 +220,14 @@ impl Plan {
             .copied()
             .collect();
         for planned in &mut self.effects {
-            planned.replaced = replaced.contains(&planned.effect.effect_type().name);
+            planned.replaced = replaced.contains(&planned.effect.name());
         }
-        self.object_styles &= self.lines.is_some();
+        self.objects.any &= self.lines.is_some();
         self.sections = has_sections && self.has_section_borders();
-        self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
+        self.objects.widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);
-        self.unstyled &= colors;
+        self.objects.unstyled &= colors;
         self.fog = self.lines.is_some_and(|lines| match lines.fog {
             LineFog::Ignore => false,
             LineFog::Fade => self.fog,
@@ -260,7 +235,7 @@ impl Plan {
         });
         // The debug view of an effect that is not drawn shows nothing.
         if let Some(DebugView::Effect(name)) = self.view
-            && !self.drawn().any(|effect| effect.effect_type().name == name)
+            && !self.drawn().any(|effect| effect.name() == name)
         {
             self.view = None;
         }
@@ -272,8 +247,8 @@ impl Plan {
         let Some(lines) = self.lines.filter(Outlines::has_measured_creases) else {
             return false;
         };
-        let found = self.any_sections || lines.objects.is_some();
-        self.asked_sections || (found && lines.divides_meshes())
+        let found = self.objects.sections || lines.objects.is_some();
+        self.objects.asked_sections || (found && lines.divides_meshes())
     }
 
     /// Adds the lines that a debug view shows.
@@ -302,7 +277,7 @@ impl Plan {
             let Some(reason) = reason(planned.effect.as_ref()) else {
                 return true;
             };
-            left_out.push((planned.effect.effect_type().name, reason));
+            left_out.push((planned.effect.name(), reason));
             false
         });
     }
@@ -332,7 +307,7 @@ impl Plan {
             needs |= Needs::LINES;
         }
         let available = [
-            (Needs::OBJECT_ANCHORS, self.anchored),
+            (Needs::OBJECT_ANCHORS, self.objects.anchored),
             (Needs::WORLD_ORIGIN, self.has_origin),
             (Needs::OBJECT_DEPTHS, self.has_ids()),
             (Needs::MIDDLE_DEPTH, !self.lacks.compute_shaders),
@@ -340,7 +315,7 @@ impl Plan {
         for (need, _) in available.into_iter().filter(|(_, is_there)| !is_there) {
             needs.remove(need);
         }
-        if self.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
+        if self.objects.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
             needs |= Needs::IDS;
         }
         if self.draws() {
@@ -412,7 +387,7 @@ impl Plan {
         let read = read | Needs::DEPTH_BORDERS | Needs::MIDDLE_DEPTH;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
-            || self.highlights
+            || self.objects.highlights
             || self.histogram
             || self.materials
             || self.lends
@@ -426,14 +401,14 @@ impl Plan {
         lines.is_some_and(|lines| lines.finds_by_normals() || lines.needs_normals())
             || self.needs().contains(Needs::NORMALS)
             // The engine's prepass without normals has no fragment shader, so meshes would not fade in it.
-            || (self.fades && self.needs_depth())
+            || (self.objects.fades && self.needs_depth())
     }
 
     /// Whether the ids of objects are drawn for this camera.
     pub fn draws_ids(&self) -> bool {
         let lines = self.lines.is_some_and(|lines| {
             let needs_objects = lines.silhouettes.is_some() && lines.weight.reads_ids();
-            lines.objects.is_some() || self.object_styles || self.sections || needs_objects
+            lines.objects.is_some() || self.objects.any || self.sections || needs_objects
         });
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
         self.has_ids() && ids

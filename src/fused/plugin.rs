@@ -2,25 +2,16 @@
 
 use bevy::{
     anti_alias::{contrast_adaptive_sharpening::cas, fxaa::fxaa, smaa::smaa},
-    app::{App, Plugin},
-    asset::{AssetServer, Assets, Handle},
     core_pipeline::{
         FullscreenShader,
         schedule::{Core3d, Core3dSystems},
         tonemapping::tonemapping,
     },
-    ecs::{
-        entity::Entity,
-        query::With,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res},
-    },
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::SpecializedRenderPipelines, renderer::RenderDevice,
     },
-    shader::Shader,
 };
 
 use super::{
@@ -47,7 +38,6 @@ struct EffectModules {
     _modules: Vec<Handle<Shader>>,
 }
 
-/// The shader of the composed pass.
 #[derive(Resource)]
 struct FusedShader(Handle<Shader>);
 

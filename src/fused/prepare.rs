@@ -1,15 +1,10 @@
 //! Writes the uniform of the fused pass for every view.
 
-use crate::effect::{EffectContext, encode};
+use crate::effect::{EffectContext, Needs, encode};
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
+    prelude::*,
     render::{
         render_resource::{Buffer, BufferUsages, CachedRenderPipelineId},
         renderer::{RenderDevice, RenderQueue},
@@ -119,7 +114,8 @@ pub(super) fn prepare_fused_pass(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
     mut blue_noise: ResMut<BlueNoise>,
 ) {
-    if views.iter().any(|(_, request, _)| request.key.blue_noise()) {
+    let needs = |request: &FusedRequest| request.key.needs.contains(Needs::BLUE_NOISE);
+    if views.iter().any(|(_, request, _)| needs(request)) {
         blue_noise.prepare(&device, &queue);
     }
     for (entity, request, fused) in &views {

@@ -13,10 +13,7 @@ impl Plan {
     ) -> Vec<(ComicsStage, Option<SkipReason>)> {
         let reason = |name: &str| {
             let left = self.left_out.iter().rev().find(|(known, _)| *known == name);
-            let planned = self
-                .effects
-                .iter()
-                .find(|p| p.effect.effect_type().name == name);
+            let planned = self.effects.iter().find(|p| p.effect.name() == name);
             match (left, planned) {
                 (_, Some(p)) if p.replaced && p.implied => Some(SkipReason::NotRequested),
                 (_, Some(p)) if p.replaced => Some(SkipReason::Replaced),

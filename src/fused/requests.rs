@@ -1,14 +1,10 @@
 //! Turns the plan of a view into requests to the services.
 
-use crate::effect::{AffectedArea, AnyEffect, EffectContext, Needs};
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        system::{Commands, Res, ResMut, SystemParam},
-    },
-    math::{Vec2, Vec4Swizzles},
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
@@ -25,7 +21,6 @@ use super::{
     drawn_area::DrawnArea,
     key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
-    object_depths::object_depths,
     pass::StylizePipeline,
     passes::{Reads, passes},
     prepare::{EarlierPassRequest, FusedRequest, TexturePass},
@@ -38,8 +33,9 @@ use crate::{
         request::RangeRequest,
         view::ViewUniform,
     },
+    effect::{AffectedArea, AnyEffect, EffectContext, Needs},
     lines::{LineLayers, LinePasses, LinePipelines, LineRequest},
-    objects::{IdRequest, ObjectDepthRequest},
+    objects::{IdRequest, ObjectDepthRequest, ObjectEye},
 };
 
 /// The requests of one plan to the services, for one view, and their pipelines.
@@ -204,14 +200,14 @@ impl ChosenArea {
         let without_lines = line_reach(plan, context).is_some();
         let is_local =
             |effect: &dyn AnyEffect| effect.any_affected_area(context) != AffectedArea::Everywhere;
-        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
+        let in_last = plan.drawn().filter(|e| whole.applies(e.name()));
         let local: Vec<_> = in_last
             .filter(|effect| is_local(*effect))
-            .map(|effect| effect.effect_type().name)
+            .map(|effect| effect.name())
             .collect();
         let saves = |request: &LineRequest| {
             let jumps = request.jumps.is_some() && !local.is_empty();
-            jumps || (without_lines && whole.reads_lines_anywhere())
+            jumps || (without_lines && whole.needs.contains(Needs::LINES_ANYWHERE))
         };
         let area = match (whole.can_overlay(plan, context), tiled) {
             (true, Some(_)) => DrawnArea::OverlaidTiles,
@@ -254,6 +250,29 @@ fn raw_depth(view: &ViewPlan, plan: &Plan, scene: &Scene) -> RawDepth {
     (view.projection).raw(&view.clip_from_view, scene.drawn(), sky)
 }
 
+/// What the effects of a plan ask for that treat objects as a whole.
+fn object_depths(
+    (plan, view): (&Plan, &ViewPlan),
+    context: &EffectContext,
+    uniform: ViewUniform,
+    extracted: &ExtractedView,
+) -> Option<ObjectDepthRequest> {
+    let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
+    wanted.then(|| ObjectDepthRequest {
+        eye: ObjectEye {
+            place: context.eye,
+            orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
+            forward: *extracted.world_from_view.forward(),
+            forgets: 0,
+            axis: context.depth_axis,
+            spare: Vec2::ZERO,
+            view: uniform,
+        },
+        mapping: plan.depth_map.mapping,
+        cuts: view.cuts,
+    })
+}
+
 fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {
     let (_, samples) = scene.depth.filter(|_| plan.needs_range())?;
     Some(RangeRequest {
@@ -277,6 +296,14 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
     })
 }
 
+/// Puts components on a view, or removes them.
+pub(crate) fn set_or_remove<B: Bundle>(view: &mut EntityCommands, wanted: Option<B>) {
+    match wanted {
+        Some(wanted) => view.insert(wanted),
+        None => view.remove::<B>(),
+    };
+}
+
 impl Requests {
     /// Whether a pipeline is still compiling. A pipeline that failed is not: its
     /// pass does not run, and the log says why.
@@ -294,7 +321,7 @@ impl Requests {
                 passes.middle,
                 passes.conversion,
             ];
-            reduction || later.into_iter().flatten().any(compute)
+            reduction || later.into_iter().flatten().any(|(_, id)| compute(id))
         });
         let lines = self.lines.as_ref();
         let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
@@ -310,26 +337,11 @@ impl Requests {
     /// `layer`: the entity with the requests for the lines of highlighted objects.
     pub fn put(self, entity: Entity, layer: Option<Entity>, commands: &mut Commands) {
         let mut view = commands.entity(entity);
-        match self.range {
-            Some(range) => view.insert(range),
-            None => view.remove::<(RangeRequest, RangePasses)>(),
-        };
-        match self.lines {
-            Some(lines) => view.insert(lines),
-            None => view.remove::<(LineRequest, LinePasses)>(),
-        };
-        match self.ids {
-            Some(ids) => view.insert(ids),
-            None => view.remove::<IdRequest>(),
-        };
-        match self.object_depths {
-            Some(object_depths) => view.insert(object_depths),
-            None => view.remove::<ObjectDepthRequest>(),
-        };
-        match self.fused {
-            Some(fused) => view.insert(fused),
-            None => view.remove::<FusedRequest>(),
-        };
+        set_or_remove(&mut view, self.range);
+        set_or_remove(&mut view, self.lines);
+        set_or_remove(&mut view, self.ids);
+        set_or_remove(&mut view, self.object_depths);
+        set_or_remove(&mut view, self.fused);
         #[cfg(feature = "objects")]
         match self.highlights {
             Some(highlights) => highlights.put(entity, layer, commands),

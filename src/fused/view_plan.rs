@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    ecs::{component::Component, entity::Entity},
-    math::{DVec3, Mat4, Vec3},
-};
+use bevy::{math::DVec3, prelude::*};
 
 use super::Plan;
 use crate::{depth::frame::DepthProjection, lines::ViewFog};

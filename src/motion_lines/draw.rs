@@ -1,27 +1,11 @@
 //! Follows objects, and draws their ribbons.
 
 use bevy::{
-    asset::Assets,
-    camera::{
-        Camera, Camera3d,
-        visibility::{InheritedVisibility, NoFrustumCulling, RenderLayers, Visibility},
-    },
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut, Ref},
-        component::Component,
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        query::{With, Without},
-        system::{Commands, Local, Query, Res, ResMut, SystemParam},
-    },
+    camera::visibility::{NoFrustumCulling, RenderLayers},
+    ecs::system::SystemParam,
     light::NotShadowCaster,
-    log::warn_once,
-    math::{DVec3, Vec3},
-    mesh::{Mesh, Mesh3d},
-    pbr::MeshMaterial3d,
-    time::Time,
-    transform::components::{GlobalTransform, Transform},
+    math::DVec3,
+    prelude::*,
 };
 
 use super::{
@@ -106,7 +90,6 @@ type Object = (
     Option<Ref<'static, RenderLayers>>,
 );
 
-/// Draws the ribbons of every object.
 pub(super) fn draw(mut objects: Query<Object>, time: Res<Time>, mut paper: Paper) {
     let scale = paper.scale();
     for (lines, mut trail, transform, visibility, layers) in &mut objects {

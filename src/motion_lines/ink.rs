@@ -1,12 +1,9 @@
 //! The material of the ribbons.
 
 use bevy::{
-    asset::Asset,
-    color::LinearRgba,
-    material::AlphaMode,
     mesh::MeshVertexBufferLayoutRef,
-    pbr::{Material, MaterialPipeline, MaterialPipelineKey},
-    reflect::TypePath,
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
     render::render_resource::{
         AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
     },

@@ -11,14 +11,8 @@ mod tests;
 mod trail;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::embedded_asset,
-    camera::visibility::VisibilitySystems,
-    ecs::schedule::IntoScheduleConfigs,
-    pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
-    render::erased_render_asset::ErasedRenderAssetPlugin,
-    shader::load_shader_library,
-    transform::TransformSystems,
+    asset::embedded_asset, camera::visibility::VisibilitySystems, pbr::PbrPlugin, prelude::*,
+    render::erased_render_asset::ErasedRenderAssetPlugin, shader::load_shader_library,
 };
 
 pub use settings::MotionLines;

@@ -1,10 +1,6 @@
 //! The component.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 
 use super::trail::Trail;
 use crate::settings::{FieldRange, impl_sanitized};

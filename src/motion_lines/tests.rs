@@ -1,13 +1,6 @@
 //! Points of meshes, and trails.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::{
-        Affine3A, Quat, Vec3, Vec3A,
-        primitives::{Cuboid, Sphere},
-    },
-    mesh::{Mesh, Meshable, PrimitiveTopology},
-};
+use bevy::{asset::RenderAssetUsages, math::Affine3A, mesh::PrimitiveTopology, prelude::*};
 
 use super::{
     ribbon::{strength, taper},
@@ -106,20 +99,6 @@ fn length(path: &[Vec3A]) -> f32 {
     path.windows(2).map(|step| step[0].distance(step[1])).sum()
 }
 
-/// Lake: a line is as long as the way in its time, whatever the frame rate. 1 %: the design's
-/// bound; here only f32 rounds.
-#[test]
-fn lines_are_as_long_as_the_way_at_every_frame_rate() {
-    for rate in [24, 30, 60, 144, 1000] {
-        let trail = trail(rate, 0.5, |t| moved(Vec3::X * (3.0 * t) as f32));
-        let path = trail.path(&corner(), 0.55, 0.95);
-        let off = (length(&path) - 1.2).abs();
-        assert!(off < 1e-5, "{rate}: {off}");
-        let tail = path[0] - Vec3A::from(corner().place);
-        assert!((tail.x - 1.65).abs() < 1e-5, "{rate}: {tail}");
-    }
-}
-
 /// Memory does not grow: poses are thinned out at high frame rates, and old ones are dropped.
 #[test]
 fn a_trail_has_few_poses() {
@@ -131,23 +110,6 @@ fn a_trail_has_few_poses() {
         let begins = 1.0 - duration;
         assert!(first.time <= begins.max(0.0) && second.time > begins);
     }
-}
-
-/// A point of a wheel is on its circle. Between two poses the path is straight: the error is the
-/// height of the arc over the chord, `r (1 - cos(a / 2))`, where a turn of 2 rad/s has 1/60 s.
-#[test]
-fn points_of_what_turns_have_curved_paths() {
-    let wheel = trail(60, 0.5, |t| Affine3A::from_rotation_y((2.0 * t) as f32));
-    let seed = corner();
-    let radius = seed.place.with_y(0.0).length();
-    let path = wheel.path(&seed, 0.6, 1.0);
-    let sag = radius * (1.0 - (1.0f32 / 60.0).cos());
-    for place in &path {
-        let off = Vec3::from(*place).with_y(0.0).length() - radius;
-        assert!(off < 1e-6 && off > -sag - 1e-6, "{off}, {sag}");
-    }
-    let turned = 0.8 * radius;
-    assert!((length(&path) - turned).abs() < 1e-3 * turned);
 }
 
 #[test]

@@ -2,12 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bevy::{
-    asset::AssetId,
-    ecs::{component::Component, entity::Entity},
-    math::{Affine3A, Vec3, Vec3A},
-    mesh::Mesh,
-};
+use bevy::{math::Affine3A, prelude::*};
 
 use super::seeds::Seed;
 

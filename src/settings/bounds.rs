@@ -1,10 +1,7 @@
 //! Clamps. Settings come from files, sliders and arithmetic, so every number is
 //! brought into its documented range before it reaches the GPU.
 
-use bevy::{
-    color::{Color, LinearRgba},
-    math::Vec2,
-};
+use bevy::prelude::*;
 
 /// `value` clamped to `low` to `high`; `default` if it is NaN or infinite.
 pub fn clamp_or_default(value: f32, default: f32, low: f32, high: f32) -> f32 {

@@ -1,10 +1,6 @@
 //! Clamps of all fields of a type, by reflection.
 
-use bevy::{
-    color::Color,
-    math::{Vec2, Vec3},
-    reflect::{PartialReflect, attributes::CustomAttributes},
-};
+use bevy::{prelude::*, reflect::attributes::CustomAttributes};
 
 use super::{
     FieldRange, clamp_color, clamp_or_default, clamp_vec2_or_default,

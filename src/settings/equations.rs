@@ -15,3 +15,9 @@ pub enum Equations {
     /// The paper's equations as printed, flaws included.
     Faithful,
 }
+
+impl Equations {
+    pub(crate) fn is_faithful(self) -> bool {
+        self == Self::Faithful
+    }
+}

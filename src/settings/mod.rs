@@ -18,10 +18,7 @@ pub use equations::Equations;
 pub(crate) use field::NotFinite;
 pub use field::{BlendField, FieldRange, HueWheel};
 
-use bevy::{
-    color::{Color, ColorToComponents, Oklaba},
-    math::Vec3,
-};
+use bevy::prelude::*;
 
 /// Red, green and blue of a color in linear light, without alpha: as shaders take it.
 pub fn linear_rgb(color: Color) -> Vec3 {

@@ -1,21 +1,8 @@
 //! Cameras that follow a style asset.
 
 use bevy::{
-    asset::{AssetEvent, AssetLoader, Assets, Handle, LoadContext, io::Reader},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        entity::Entity,
-        lifecycle::RemovedComponents,
-        message::MessageReader,
-        query::With,
-        reflect::ReflectComponent,
-        system::{Commands, Query, Res},
-        template::FromTemplate,
-        world::{FromWorld, World},
-    },
-    log::warn,
-    reflect::{Reflect, TypePath, std_traits::ReflectDefault},
+    asset::{AssetLoader, LoadContext, io::Reader},
+    prelude::*,
 };
 
 use super::{ComicStyle, ComicStyleError};

@@ -70,7 +70,7 @@ impl ComicStyle {
     fn with_implied(&self) -> EffectSet {
         let mut all = self.effects.clone();
         for effect in self.effects.iter().filter_map(|e| e.any_implied()) {
-            if all.by_name(effect.effect_type().name).is_none() {
+            if all.by_name(effect.name()).is_none() {
                 all.insert(effect);
             }
         }

@@ -70,6 +70,14 @@ pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
+/// The text of settings; an error says why they have none.
+pub(crate) fn written<T: Serialize>(settings: &T) -> Result<String, String> {
+    let pretty = ron::ser::PrettyConfig::default().indentor("    ");
+    let text = ron_options().to_string_pretty(settings, pretty);
+    let text = text.map_err(|error| error.to_string())?;
+    Ok(text + "\n")
+}
+
 impl ComicStyle {
     /// Reads a style from the text of a `.comic.ron` file, with the effects of
     /// this crate. [`EffectRegistry::style_from_ron`] also knows those of an app.
@@ -89,14 +97,7 @@ impl ComicStyle {
     /// # Errors
     /// [`ComicStyleError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ComicStyleError> {
-        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-        let mut text = ron_options()
-            .to_string_pretty(self, pretty)
-            .map_err(|error| ComicStyleError::Write {
-                message: error.to_string(),
-            })?;
-        text.push('\n');
-        Ok(text)
+        written(self).map_err(|message| ComicStyleError::Write { message })
     }
 }
 
@@ -120,7 +121,7 @@ impl EffectRegistry {
     /// # Errors
     /// As [`ComicStyle::from_ron`].
     pub fn read_style(&self, text: &str) -> Result<ReadStyle, ComicStyleError> {
-        let current = match stated_version(text) {
+        let current = match renamed::version(text) {
             Some(PREVIOUS) => renamed::upgraded(text, "3", renamed::STYLE),
             None | Some(VERSION) => Upgraded::unchanged(text),
             Some(found) => return Err(ComicStyleError::Version { found }),
@@ -138,11 +139,6 @@ impl EffectRegistry {
             advice: current.advice(),
         })
     }
-}
-
-/// The version that a text states.
-pub(crate) fn stated_version(text: &str) -> Option<u32> {
-    renamed::version(text)
 }
 
 fn parse(
@@ -171,29 +167,13 @@ impl Serialize for ComicStyle {
             file.serialize_field("depth_map", &self.depth_map)?;
         }
         for effect in self.effects() {
-            file.serialize_field(effect.effect_type().name, &Present(effect))?;
+            // An `Option` in the file, as `None` may be written.
+            file.serialize_field(effect.name(), &Some(effect.as_serialize()))?;
         }
         for name in self.off.iter().filter(|_| self.partial) {
             file.serialize_field(name, &None::<()>)?;
         }
         file.end()
-    }
-}
-
-/// An effect that is there: an `Option` in the file, as `None` may be written.
-struct Present<'a>(&'a dyn AnyEffect);
-
-impl Serialize for Present<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_some(&Erased(self.0))
-    }
-}
-
-struct Erased<'a>(&'a dyn AnyEffect);
-
-impl Serialize for Erased<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        erased_serde::serialize(self.0.as_serialize(), serializer)
     }
 }
 

@@ -1,14 +1,6 @@
 //! Styles over a camera's own style.
 
-use bevy::{
-    asset::AssetId,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        system::EntityCommands,
-        world::{EntityRef, EntityWorldMut},
-    },
-};
+use bevy::prelude::*;
 
 use super::ComicStyle;
 use crate::{
@@ -168,13 +160,13 @@ impl ComicStyle {
     /// Changes what differs between two complete styles.
     fn take_edits(&mut self, before: &Self, after: &Self) {
         for effect in after.effects.iter() {
-            let before = before.by_name(effect.effect_type().name);
+            let before = before.by_name(effect.name());
             if before.is_none_or(|before| *before != *effect) {
                 self.insert_any(effect.boxed());
             }
         }
         for effect in before.effects.iter() {
-            let name = effect.effect_type().name;
+            let name = effect.name();
             if after.by_name(name).is_none() {
                 self.remove_by_name(name);
                 if self.partial {

@@ -13,14 +13,7 @@ mod volume;
 
 use std::collections::BTreeSet;
 
-use bevy::{
-    app::{App, Plugin, PostUpdate, Update},
-    asset::{Asset, AssetApp},
-    camera::visibility::VisibilitySystems,
-    ecs::schedule::IntoScheduleConfigs,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    transform::TransformSystems,
-};
+use bevy::{camera::visibility::VisibilitySystems, prelude::*};
 
 pub use apply::{Comic, ComicTemplate};
 pub use format::{ComicStyleError, ReadStyle};
@@ -171,7 +164,7 @@ impl ComicStyle {
 
     /// Adds an effect whose type is known at run time only.
     pub fn insert_any(&mut self, effect: Box<dyn AnyEffect>) {
-        self.off.remove(effect.effect_type().name);
+        self.off.remove(effect.name());
         self.effects.insert(effect);
     }
 

@@ -90,9 +90,8 @@ pub(crate) struct Upgraded {
 
 /// A word that was replaced.
 struct Edit {
-    line: usize,
-    /// Column of the new word, from 1.
-    column: usize,
+    /// Where the new word begins in the upgraded text, in bytes.
+    at: usize,
     entry: String,
     old: String,
     new: &'static str,
@@ -109,13 +108,17 @@ impl Upgraded {
 
     /// The column in the file of a column in the upgraded text.
     pub fn original_column(&self, line: usize, column: usize) -> usize {
-        let shift: isize = self
+        let lines = self.text.split_inclusive('\n').take(line.saturating_sub(1));
+        let start: usize = lines.map(str::len).sum();
+        let rest = &self.text[start..];
+        let end = rest.char_indices().nth(column.saturating_sub(1));
+        let end = start + end.map_or(rest.len(), |(length, _)| length);
+        let before = self
             .edits
             .iter()
-            .filter(|edit| edit.line == line && edit.column < column)
-            .map(|edit| edit.new.len() as isize - edit.old.len() as isize)
-            .sum();
-        column.saturating_add_signed(-shift)
+            .filter(|edit| (start..end).contains(&edit.at));
+        let shift = before.map(|edit| edit.new.len() as isize - edit.old.len() as isize);
+        column.saturating_add_signed(-shift.sum::<isize>())
     }
 
     /// What to change in the file; `None` if it is up to date.
@@ -149,26 +152,6 @@ pub(crate) fn version(text: &str) -> Option<u32> {
         .and_then(|word| text[word.range].parse().ok())
 }
 
-/// The end of a text that grows: line and column from 1.
-struct End {
-    line: usize,
-    column: usize,
-}
-
-impl End {
-    /// Moves behind `more`.
-    fn pass(&mut self, more: &str) {
-        for c in more.chars() {
-            if c == '\n' {
-                self.line += 1;
-                self.column = 1;
-            } else {
-                self.column += 1;
-            }
-        }
-    }
-}
-
 /// The text of a file of the version before `version` with the current names. Takes time in
 /// proportion to the length of the text.
 pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> Upgraded {
@@ -176,7 +159,6 @@ pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> U
         text: String::with_capacity(text.len()),
         edits: Vec::new(),
     };
-    let mut end = End { line: 1, column: 1 };
     let mut copied = 0;
     for word in entry_words(text) {
         let old = &text[word.range.clone()];
@@ -191,18 +173,14 @@ pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> U
             within(word.within).or_else(|| within(word.entry))
         };
         let Some(new) = new else { continue };
-        let before = &text[copied..word.range.start];
-        upgraded.text.push_str(before);
-        end.pass(before);
+        upgraded.text.push_str(&text[copied..word.range.start]);
         upgraded.edits.push(Edit {
-            line: end.line,
-            column: end.column,
+            at: upgraded.text.len(),
             entry: word.entry.to_owned(),
             old: old.to_owned(),
             new,
         });
         upgraded.text.push_str(new);
-        end.pass(new);
         copied = word.range.end;
     }
     upgraded.text.push_str(&text[copied..]);

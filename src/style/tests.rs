@@ -3,21 +3,13 @@
 use std::any::TypeId;
 
 use bevy::{
-    app::App,
-    asset::{AssetPlugin, Assets},
-    camera::{
-        Camera3d,
-        visibility::{InheritedVisibility, RenderLayers},
-    },
-    ecs::{entity::Entity, template::FromTemplate},
-    math::Vec3,
-    prelude::{AppTypeRegistry, TaskPoolPlugin},
+    camera::visibility::RenderLayers,
+    prelude::*,
     reflect::{
         TypeRegistry,
         serde::{ReflectDeserializer, ReflectSerializer},
     },
     tasks::tick_global_task_pools_on_main_thread,
-    transform::components::GlobalTransform,
 };
 use serde::de::DeserializeSeed;
 
@@ -230,6 +222,12 @@ fn a_transition_to_a_partial_style_keeps_the_cameras_own() {
     assert_eq!(end.depth_map, Some(fixed()));
 }
 
+/// The width of a style's outlines, and how many effects it has.
+fn lines_and_effects(look: &ComicStyle) -> (Option<f32>, usize) {
+    let width = look.get::<Outlines>().map(|lines| lines.width);
+    (width, look.effects.iter().count())
+}
+
 /// The style of a camera in an app with volumes, after it was moved to a place on the x axis.
 fn look_at(app: &mut App, camera: Entity, x: f32) -> ComicStyle {
     let place = GlobalTransform::from_xyz(x, 0.0, 0.0);
@@ -304,12 +302,8 @@ fn volumes_lie_over_the_style_that_was_applied_last() {
         .spawn((volume, GlobalTransform::IDENTITY, shown));
     let parts = (InStyleVolumes, Comic(handle.clone()));
     app.world_mut().entity_mut(camera).insert(parts);
-    let width = |look: &ComicStyle| look.get::<Outlines>().map(|lines| lines.width);
     let inside = look_at(&mut app, camera, 0.0);
-    assert_eq!(
-        (width(&inside), inside.effects.iter().count()),
-        (Some(5.0), 2)
-    );
+    assert_eq!(lines_and_effects(&inside), (Some(5.0), 2));
 
     // Its file changes.
     let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
@@ -318,10 +312,7 @@ fn volumes_lie_over_the_style_that_was_applied_last() {
         app.update();
     }
     let inside = look_at(&mut app, camera, 0.0);
-    assert_eq!(
-        (width(&inside), inside.effects.iter().count()),
-        (Some(7.0), 2)
-    );
+    assert_eq!(lines_and_effects(&inside), (Some(7.0), 2));
     assert_eq!(look_at(&mut app, camera, 9.0).effects, second.effects);
 
     // A transition within the volume arrives, and the volume lies over it again.
@@ -333,13 +324,13 @@ fn volumes_lie_over_the_style_that_was_applied_last() {
         app.update();
     }
     let inside = look_at(&mut app, camera, 0.0);
-    assert_eq!(
-        (width(&inside), inside.effects.iter().count()),
-        (Some(5.0), 2)
-    );
+    assert_eq!(lines_and_effects(&inside), (Some(5.0), 2));
     assert_eq!(look_at(&mut app, camera, 9.0).effects, first.effects);
     app.world_mut().entity_mut(camera).remove::<Comic>();
-    assert_eq!(width(&look_at(&mut app, camera, 9.0)), Some(1.0));
+    assert_eq!(
+        lines_and_effects(&look_at(&mut app, camera, 9.0)).0,
+        Some(1.0)
+    );
 }
 
 #[test]
@@ -359,38 +350,34 @@ fn what_volumes_say_nothing_about_belongs_to_the_game() {
     );
     let volume = app.world_mut().spawn(volume).id();
     app.world_mut().entity_mut(camera).insert(InStyleVolumes);
-    let width = |look: &ComicStyle| look.get::<Outlines>().map(|lines| lines.width);
     look_at(&mut app, camera, 0.9);
     let added = (outlines(4.0), Desaturation::default());
     app.world_mut().entity_mut(camera).insert(added);
     let look = look_at(&mut app, camera, 0.8);
-    assert_eq!((width(&look), look.effects.iter().count()), (Some(4.0), 3));
+    assert_eq!(lines_and_effects(&look), (Some(4.0), 3));
     app.world_mut().entity_mut(camera).remove::<Desaturation>();
     let mut edited = look_at(&mut app, camera, 0.7);
-    assert_eq!(
-        (width(&edited), edited.effects.iter().count()),
-        (Some(4.0), 2)
-    );
+    assert_eq!(lines_and_effects(&edited), (Some(4.0), 2));
 
     // A panel edits what it sees; the volume stays a volume.
     edited.insert(outlines(6.0));
     edited.edit(&mut app.world_mut().commands().entity(camera));
     let look = look_at(&mut app, camera, 0.9);
     let amount = look.get::<Vignette>().map(|corners| corners.amount);
-    assert_eq!((width(&look), look.effects.iter().count()), (Some(6.0), 2));
+    assert_eq!(lines_and_effects(&look), (Some(6.0), 2));
     assert!(amount < edited.get::<Vignette>().map(|corners| corners.amount));
     let outside = look_at(&mut app, camera, 9.0);
-    assert_eq!(
-        (width(&outside), outside.effects.iter().count()),
-        (Some(6.0), 1)
-    );
+    assert_eq!(lines_and_effects(&outside), (Some(6.0), 1));
 
     look_at(&mut app, camera, 0.0);
     app.world_mut()
         .get_mut::<StyleVolume>(volume)
         .expect("a volume")
         .style = wide;
-    assert_eq!(width(&look_at(&mut app, camera, 0.0)), Some(3.0));
+    assert_eq!(
+        lines_and_effects(&look_at(&mut app, camera, 0.0)).0,
+        Some(3.0)
+    );
 }
 
 #[test]
@@ -419,7 +406,7 @@ fn partial_styles_are_files_too() {
 }
 
 /// Loads until the camera has the style, or fails.
-fn load(app: &mut App, handle: &bevy::asset::Handle<ComicStyle>) -> ComicStyle {
+fn load(app: &mut App, handle: &Handle<ComicStyle>) -> ComicStyle {
     for _ in 0..1000 {
         app.update();
         tick_global_task_pools_on_main_thread();
@@ -438,7 +425,7 @@ fn every_preset_is_an_asset_that_a_template_can_name() {
     app.finish();
     app.cleanup();
     for preset in presets::ALL {
-        let assets = app.world().resource::<bevy::asset::AssetServer>().clone();
+        let assets = app.world().resource::<AssetServer>().clone();
         let handle = assets.load(preset.path());
         assert_eq!(load(&mut app, &handle), preset.style(), "{preset}");
     }
@@ -477,8 +464,8 @@ fn every_effect_and_style_serializes_by_reflection() {
 }
 
 fn assert_serializes(registry: &TypeRegistry, id: TypeId, name: &str) {
-    let write = registry.get_type_data::<bevy::reflect::ReflectSerialize>(id);
+    let write = registry.get_type_data::<ReflectSerialize>(id);
     assert!(write.is_some(), "{name} does not reflect Serialize");
-    let read = registry.get_type_data::<bevy::reflect::ReflectDeserialize>(id);
+    let read = registry.get_type_data::<ReflectDeserialize>(id);
     assert!(read.is_some(), "{name} does not reflect Deserialize");
 }

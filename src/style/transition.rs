@@ -1,24 +1,6 @@
 //! From one style to another over time.
 
-use bevy::{
-    asset::{AssetServer, Assets, Handle},
-    ecs::{
-        component::Component,
-        entity::Entity,
-        event::EntityEvent,
-        query::Has,
-        reflect::ReflectComponent,
-        system::{Commands, Query, Res},
-        world::{EntityRef, EntityWorldMut},
-    },
-    log::warn,
-    math::{
-        Curve,
-        curve::{EaseFunction, EasingCurve},
-    },
-    reflect::Reflect,
-    time::{Real, Time},
-};
+use bevy::prelude::*;
 
 use super::{Comic, ComicStyle, layer::own_style};
 use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};

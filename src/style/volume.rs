@@ -1,21 +1,7 @@
 //! Regions with a style of their own.
 
 use bevy::{
-    asset::{AssetEvent, Assets, Handle},
-    camera::visibility::{InheritedVisibility, RenderLayers, Visibility},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        entity::Entity,
-        message::MessageReader,
-        query::{Has, Or, With},
-        reflect::ReflectComponent,
-        system::{Commands, Query, Res, SystemChangeTick},
-        world::EntityWorldMut,
-    },
-    math::{Affine3A, Vec3A},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::{GlobalTransform, Transform},
+    camera::visibility::RenderLayers, ecs::system::SystemChangeTick, math::Affine3A, prelude::*,
 };
 
 use super::{
@@ -189,7 +175,6 @@ fn apply(
 
 #[cfg(test)]
 mod tests {
-    use bevy::math::{Quat, Vec3};
 
     use super::*;
 

@@ -8,7 +8,6 @@ use bevy::{
 
 use super::TonalArtMap;
 
-/// The smallest mip level.
 const SMALLEST: usize = 16;
 /// Tones that are drawn one after the other, up to the darkest; what is left are gaps.
 const STEPS: usize = 48;

@@ -1,9 +1,6 @@
 //! The second axis of a ramp.
 
-use bevy::{
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use super::RampStop;
@@ -114,7 +111,6 @@ impl Default for DetailAxis {
 }
 
 impl DetailAxis {
-    /// The shader definition.
     pub(super) fn definition(self) -> &'static str {
         match self {
             Self::Depth { .. } => "DETAIL_DEPTH",

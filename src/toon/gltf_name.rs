@@ -1,16 +1,6 @@
 //! Gives meshes the names that their materials have in a glTF file.
 
-use bevy::{
-    ecs::{
-        entity::Entity,
-        query::{Or, With, Without},
-        reflect::{AppTypeRegistry, ReflectComponent},
-        system::{Commands, Query, Res},
-        world::EntityRef,
-    },
-    pbr::{MeshMaterial3d, StandardMaterial},
-    reflect::TypeRegistry,
-};
+use bevy::{prelude::*, reflect::TypeRegistry};
 
 use super::{
     name::MaterialName,

@@ -105,46 +105,6 @@ mod tests {
         }
     }
 
-    /// Whatever numbers a material has, all numbers of its uniform are finite.
-    #[test]
-    fn every_number_of_the_uniform_is_finite() {
-        for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e-45, 1e30] {
-            let hatching = Hatching {
-                solid_below: x,
-                bare_above: x,
-                gamma: x,
-                tones: u32::MAX,
-                spacing: x,
-                layers: 0,
-                layer_darkness: x,
-                angle: x,
-                length: x,
-                breaks: x,
-                wobble: x,
-                pressure: x,
-                rate: x,
-                at_near: x,
-                ..Hatching::default()
-            };
-            let light = ToonLight {
-                art_map_repeat: x,
-                ..with(hatching)
-            };
-            let uniform = HatchUniform::from(&light);
-            let text = format!("{uniform:?}");
-            assert!(
-                !text.contains("NaN") && !text.contains("inf"),
-                "{x}: {text}"
-            );
-            assert_eq!(uniform, HatchUniform::from(&light.sanitized()));
-        }
-    }
-
-    #[test]
-    fn the_uniform_can_be_one() {
-        HatchUniform::assert_uniform_compat();
-    }
-
     #[test]
     fn strokes_that_are_not_seen_are_not_compiled() {
         assert_eq!(HatchKey::of(&ToonLight::default()), None);

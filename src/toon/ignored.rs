@@ -1,15 +1,6 @@
 //! Names what toon materials ask for and do not get.
 
-use bevy::{
-    asset::{AssetEvent, Assets},
-    ecs::{
-        message::MessageReader,
-        query::With,
-        system::{Query, Res},
-    },
-    log::warn_once,
-    pbr::{ScreenSpaceReflections, StandardMaterial},
-};
+use bevy::{pbr::ScreenSpaceReflections, prelude::*};
 
 use super::ToonMaterial;
 

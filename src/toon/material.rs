@@ -3,16 +3,10 @@
 use std::borrow::Cow;
 
 use bevy::{
-    asset::{Asset, AssetEvent, Assets, Handle},
-    ecs::{message::MessageReader, system::ResMut},
-    image::Image,
     material::OpaqueRendererMethod,
     mesh::MeshVertexBufferLayoutRef,
-    pbr::{
-        ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline,
-        StandardMaterial,
-    },
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
+    prelude::*,
     render::render_resource::{
         AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
     },
@@ -204,7 +198,6 @@ impl Default for ToonLight {
 }
 
 impl ToonLight {
-    /// The ramp that is drawn.
     pub(super) fn drawn_ramp(&self) -> Option<Cow<'_, Ramp>> {
         let painted = self.ramp_map.is_ready();
         let default = painted.then(|| Cow::Owned(Ramp::default()));

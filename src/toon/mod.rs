@@ -27,13 +27,11 @@ mod vertex;
 mod view_range;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate, Update},
-    asset::{AssetApp, AssetEventSystems, Assets, embedded_asset, load_internal_asset},
-    ecs::schedule::IntoScheduleConfigs,
-    image::Image,
-    pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
+    asset::{AssetEventSystems, embedded_asset, load_internal_asset},
+    pbr::PbrPlugin,
+    prelude::*,
     render::erased_render_asset::ErasedRenderAssetPlugin,
-    shader::{Shader, load_shader_library},
+    shader::load_shader_library,
 };
 
 pub use art_map::TonalArtMap;

@@ -2,10 +2,7 @@
 
 use std::borrow::Borrow;
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 
 /// The name of the material of a mesh, by which a [`ToonScene`](crate::ToonScene) chooses its
 /// shading.

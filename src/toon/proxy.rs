@@ -1,12 +1,6 @@
 //! Simpler forms that surfaces are shaded as.
 
-use bevy::{
-    camera::primitives::MeshAabb,
-    math::Vec3,
-    mesh::Mesh,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{camera::primitives::MeshAabb, prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, NotFinite, impl_sanitized};

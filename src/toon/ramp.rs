@@ -1,13 +1,6 @@
 //! Tones of a toon material by how much light arrives.
 
-use bevy::{
-    color::Color,
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-    shader::ShaderDefVal,
-    utils::default,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType, shader::ShaderDefVal};
 use serde::{Deserialize, Serialize};
 
 use super::{RampDetail, RampStop};

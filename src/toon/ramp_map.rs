@@ -1,10 +1,6 @@
 //! Tones that are painted in an image.
 
-use bevy::{
-    asset::{AssetPath, Handle},
-    image::Image,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::{asset::AssetPath, prelude::*};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// An image of the tones of a [`Ramp`](crate::toon::Ramp), for

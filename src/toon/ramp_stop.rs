@@ -1,9 +1,6 @@
 //! Where a tone of a ramp begins.
 
-use bevy::{
-    color::Color,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, color_serde};

@@ -1,16 +1,11 @@
 //! Sums of the tones that are painted in images.
 
 use bevy::{
-    asset::{AssetEvent, AssetId, AssetServer, Assets, Handle, LoadState, RenderAssetUsages},
-    color::ColorToComponents,
-    ecs::{
-        message::MessageReader,
-        resource::Resource,
-        system::{Res, ResMut, SystemParam},
-    },
-    image::{Image, TextureFormatPixelInfo},
-    log::warn,
+    asset::{LoadState, RenderAssetUsages},
+    ecs::system::SystemParam,
+    image::TextureFormatPixelInfo,
     platform::collections::HashMap,
+    prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 
@@ -86,7 +81,6 @@ fn size_of(image: &Image) -> Result<[u32; 2], String> {
     Ok([size.width, size.height])
 }
 
-/// What was found of an image.
 enum Found {
     Sums(Handle<Image>),
     Unusable,

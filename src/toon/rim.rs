@@ -1,11 +1,6 @@
 //! Light along the borders of things.
 
-use bevy::{
-    color::Color,
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, NotFinite, color_serde, impl_sanitized, linear_rgb};

@@ -1,15 +1,10 @@
 //! The shader of rims, which loads depth where the adapter of its app can.
 
 use bevy::{
-    app::{App, PostUpdate},
-    asset::{AssetEventSystems, Assets, Handle, embedded_asset, load_embedded_asset},
-    ecs::{
-        resource::Resource,
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Res, ResMut},
-    },
+    asset::{AssetEventSystems, embedded_asset, load_embedded_asset},
+    prelude::*,
     render::renderer::RenderAdapterInfo,
-    shader::{Shader, ShaderDefVal},
+    shader::ShaderDefVal,
 };
 
 use crate::depth::surfaces::prepass_is_empty;
@@ -56,10 +51,7 @@ fn follow_adapter(
 
 #[cfg(test)]
 mod tests {
-    use bevy::{
-        ecs::{system::RunSystemOnce, world::World},
-        render::renderer::WgpuWrapper,
-    };
+    use bevy::{ecs::system::RunSystemOnce, render::renderer::WgpuWrapper};
     use wgpu_types::{AdapterInfo, Backend, DeviceType};
 
     use super::*;

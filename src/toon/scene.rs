@@ -3,25 +3,9 @@
 mod copies;
 
 use bevy::{
-    app::App,
-    asset::{AssetEvent, Assets, Handle},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        entity::{Entity, EntityHashSet},
-        hierarchy::{ChildOf, Children},
-        lifecycle::{Insert, Remove, RemovedComponents},
-        message::MessageReader,
-        observer::On,
-        query::{Changed, Or, With, Without},
-        reflect::ReflectComponent,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
-        world::EntityRef,
-    },
-    pbr::{MeshMaterial3d, StandardMaterial},
+    ecs::{entity::EntityHashSet, system::SystemParam},
     platform::collections::{HashMap, HashSet},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
 };
 
 use super::{MaterialName, ToonLight, ToonMaterial, ToonShading, ToonShadingHandle, shading};
@@ -136,27 +120,14 @@ pub(super) struct SceneChanges {
 pub(super) fn build(app: &mut App) {
     app.init_resource::<Copies>()
         .init_resource::<SceneChanges>()
-        .add_observer(
-            |on: On<Insert, MeshMaterial3d<StandardMaterial>>,
-             mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Insert, ChildOf>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, ChildOf>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        )
-        .add_observer(
-            |on: On<Remove, ToonScene>, mut changes: ResMut<SceneChanges>| {
-                changes.subtrees.insert(on.entity);
-            },
-        );
+        .add_observer(note::<Insert, MeshMaterial3d<StandardMaterial>>)
+        .add_observer(note::<Insert, ChildOf>)
+        .add_observer(note::<Remove, ChildOf>)
+        .add_observer(note::<Remove, ToonScene>);
+}
+
+fn note<E: EntityEvent, B: Bundle>(on: On<E, B>, mut changes: ResMut<SceneChanges>) {
+    changes.subtrees.insert(on.event_target());
 }
 
 /// The scenes, and the way to them.
@@ -235,7 +206,6 @@ fn choose(
         .cloned()
 }
 
-/// The materials of a mesh.
 type Dressed = (
     Option<&'static MeshMaterial3d<StandardMaterial>>,
     Option<&'static MeshMaterial3d<ToonMaterial>>,

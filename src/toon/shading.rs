@@ -1,14 +1,10 @@
 //! Materials as files: the lighting of a toon material as an asset.
 
 use bevy::{
-    asset::{Asset, AssetEvent, AssetId, AssetLoader, AssetPath, Handle, LoadContext, io::Reader},
-    ecs::{component::Component, reflect::ReflectComponent, template::FromTemplate},
-    log::warn,
-    reflect::{
-        Reflect, ReflectDeserialize, ReflectSerialize, TypePath, std_traits::ReflectDefault,
-    },
+    asset::{AssetLoader, AssetPath, LoadContext, io::Reader},
+    prelude::*,
 };
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::ToonLight;
@@ -55,8 +51,9 @@ use crate::style::{
 /// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
 /// `file_watcher`). A file that becomes unreadable changes nothing: the last shading stays, and the
 /// log names line, column and what is wrong.
-#[derive(Asset, Reflect, Clone, Debug, Default, PartialEq)]
+#[derive(Asset, Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(try_from = "File", into = "File")]
 pub struct ToonShading {
     /// Title for people; any text. Default: empty.
     pub name: String,
@@ -127,7 +124,6 @@ pub enum ToonShadingError {
 const VERSION: u32 = 2;
 const PREVIOUS: u32 = VERSION - 1;
 
-/// What a file has.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "ToonShading", deny_unknown_fields)]
 struct File {
@@ -138,35 +134,28 @@ struct File {
     light: ToonLight,
 }
 
-impl Serialize for ToonShading {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let file = File {
+impl From<ToonShading> for File {
+    fn from(shading: ToonShading) -> Self {
+        Self {
             version: VERSION,
-            name: self.name.clone(),
-            light: self.light.clone(),
-        };
-        file.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for ToonShading {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let file = File::deserialize(deserializer)?;
-        let found = file.version;
-        if found == VERSION {
-            Ok(file.into())
-        } else {
-            Err(D::Error::custom(ToonShadingError::Version { found }))
+            name: shading.name,
+            light: shading.light,
         }
     }
 }
 
-impl From<File> for ToonShading {
-    fn from(file: File) -> Self {
-        Self {
+impl TryFrom<File> for ToonShading {
+    type Error = ToonShadingError;
+
+    fn try_from(file: File) -> Result<Self, ToonShadingError> {
+        let found = file.version;
+        if found != VERSION {
+            return Err(ToonShadingError::Version { found });
+        }
+        Ok(Self {
             name: file.name,
             light: file.light,
-        }
+        })
     }
 }
 
@@ -215,14 +204,7 @@ impl ToonShading {
     /// # Errors
     /// [`ToonShadingError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ToonShadingError> {
-        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-        let mut text = format::ron_options()
-            .to_string_pretty(self, pretty)
-            .map_err(|error| ToonShadingError::Write {
-                message: error.to_string(),
-            })?;
-        text.push('\n');
-        Ok(text)
+        format::written(self).map_err(|message| ToonShadingError::Write { message })
     }
 }
 
@@ -233,9 +215,8 @@ fn read(text: &str) -> Result<(ToonShading, Option<String>), ToonShadingError> {
         None | Some(VERSION) => Upgraded::unchanged(text),
         Some(found) => return Err(ToonShadingError::Version { found }),
     };
-    let file: Result<File, _> = format::ron_options().from_str(&current.text);
-    match file {
-        Ok(file) => Ok((file.into(), current.advice())),
+    match format::ron_options().from_str(&current.text) {
+        Ok(shading) => Ok((shading, current.advice())),
         Err(error) => Err(ToonShadingError::Syntax {
             line: error.span.start.line,
             column: current.original_column(error.span.start.line, error.span.start.col),

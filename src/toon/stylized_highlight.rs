@@ -1,10 +1,6 @@
 //! Highlights as signs.
 
-use bevy::{
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, impl_sanitized};
@@ -123,7 +119,6 @@ impl Default for StylizedHighlight {
 impl_sanitized!(StylizedHighlight);
 
 impl HighlightFrame {
-    /// The shader definition.
     pub(super) fn definition(self) -> &'static str {
         match self {
             Self::View => "STYLIZED_HIGHLIGHT_VIEW",

@@ -11,7 +11,7 @@ use super::{
     rim::RimUniform,
     stylized_highlight::StylizedHighlightUniform,
 };
-use crate::settings::clamp_or_default;
+use crate::{gpu::definitions, settings::clamp_or_default};
 
 /// The uniform: `Toon` in `bindings.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -106,7 +106,6 @@ impl From<&ToonLight> for ToonKey {
 }
 
 impl ToonKey {
-    /// Whether the material reads smoothed normals.
     pub(super) fn reads_smoothed(self) -> bool {
         self.proxy == Some(ProxyKey::Smoothed)
     }
@@ -120,17 +119,14 @@ impl ToonKey {
     ) -> Vec<ShaderDefVal> {
         let rest = self.hatch.is_some_and(|hatch| hatch.needs_rest(others));
         let smoothed = smoothed && self.reads_smoothed();
-        let names = [
+        let other_normal = smoothed || self.proxy == Some(ProxyKey::Solid);
+        let found = definitions([
             (rest, "HATCH_REST"),
             (smoothed, "PROXY_SMOOTHED"),
-            (
-                smoothed || self.proxy == Some(ProxyKey::Solid),
-                "PROXY_NORMAL",
-            ),
+            (other_normal, "PROXY_NORMAL"),
             (self.visible, "DETAIL_VISIBLE"),
-        ];
-        let used = names.into_iter().filter(|(is_used, _)| *is_used);
-        used.map(|(_, name)| name.into()).collect()
+        ]);
+        found.collect()
     }
 
     /// The shader definitions, in addition to those of the mesh and the view. `smoothed`: the mesh
@@ -140,140 +136,45 @@ impl ToonKey {
             let is_one = |d: &ShaderDefVal| matches!(d, ShaderDefVal::Bool(n, true) if names.contains(&n.as_str()));
             others.iter().any(is_one)
         };
-        let mut all = Vec::new();
-        if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
-            all.push("ENVIRONMENT".into());
-        }
         // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read
         // four texels at once.
-        let unlike = ["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"];
-        if has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !has(&unlike) {
-            all.push("SLOPED_SHADOWS".into());
-        }
-        all.extend(self.ramp.into_iter().flat_map(RampKey::definitions));
-        if self.stylized_highlight.is_some() || self.rim {
-            all.push("KEY_LIGHT".into());
-        }
-        if let Some((shape, frame)) = self.stylized_highlight {
-            all.extend(["STYLIZED_HIGHLIGHT".into(), frame.definition().into()]);
-            all.push(ShaderDefVal::UInt(
-                "STYLIZED_HIGHLIGHT_SHAPE".into(),
-                shape as u32,
-            ));
-        }
-        let proxy = self
-            .proxy
-            .map_or(&[][..], |proxy| proxy.definitions(smoothed));
-        all.extend(proxy.iter().map(|name| ShaderDefVal::from(*name)));
+        let unlike = has(&["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"]);
+        let sloped = has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !unlike;
         let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
         let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
-        all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
-        all.extend(of_map.then(|| "THRESHOLD_MAP".into()));
-        all.extend((of_vertices || of_map).then(|| "THRESHOLD".into()));
-        all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
-        if self.rim {
-            all.push("RIM".into());
-        }
-        if self.even_rim && has(&["DEPTH_PREPASS"]) {
-            all.push("DEPTH_RIM".into());
-        }
-        all
+        let environment = has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]);
+        let flags = definitions([
+            (environment, "ENVIRONMENT"),
+            (sloped, "SLOPED_SHADOWS"),
+            (self.stylized_highlight.is_some() || self.rim, "KEY_LIGHT"),
+            (of_vertices, "VERTEX_THRESHOLD"),
+            (of_map, "THRESHOLD_MAP"),
+            (of_vertices || of_map, "THRESHOLD"),
+            (self.rim, "RIM"),
+            (self.even_rim && has(&["DEPTH_PREPASS"]), "DEPTH_RIM"),
+        ]);
+        let ramp = self.ramp.into_iter().flat_map(RampKey::definitions);
+        let sign = self.stylized_highlight.map(|(shape, frame)| {
+            let shape = ShaderDefVal::UInt("STYLIZED_HIGHLIGHT_SHAPE".into(), shape as u32);
+            let flags = ["STYLIZED_HIGHLIGHT", frame.definition()];
+            flags.map(ShaderDefVal::from).into_iter().chain([shape])
+        });
+        let proxy = self.proxy.map(|proxy| proxy.definitions(smoothed));
+        let proxy = proxy
+            .into_iter()
+            .flatten()
+            .map(|name| ShaderDefVal::from(*name));
+        let hatch = self.hatch.map(|hatch| hatch.definitions(others));
+        let modes = sign.into_iter().flatten().chain(proxy);
+        let modes = modes.chain(hatch.into_iter().flatten());
+        flags.chain(ramp).chain(modes).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use bevy::math::{Vec2, Vec3};
-
     use super::*;
-    use crate::toon::{
-        DetailAxis, ProxyShape, Ramp, RampDetail, Rim, ShadingProxy, StylizedHighlight,
-    };
-
-    /// A material whose numbers are all `x`.
-    fn odd(x: f32, axis: DetailAxis, shape: ProxyShape) -> ToonLight {
-        let plain = vec![];
-        ToonLight {
-            ramp: Some(Ramp {
-                detail: Some(RampDetail { plain, axis }),
-                ..Ramp::default()
-            }),
-            stylized_highlight: Some(StylizedHighlight {
-                size: x,
-                offset: Vec2::splat(x),
-                rotation: x,
-                scale: Vec2::splat(x),
-                split: Vec2::splat(x),
-                square: x,
-                bar: x,
-                points: 0,
-                sharpness: u32::MAX,
-                softness: x,
-                ..StylizedHighlight::default()
-            }),
-            proxy: Some(ShadingProxy {
-                shape,
-                amount: x,
-                amount_at_far: x,
-                from: x,
-                ratio: x,
-            }),
-            rim: Some(Rim {
-                width: RimWidth::Pixels(x),
-                strength: x,
-                lit_side: x,
-                ..Rim::default()
-            }),
-            ..ToonLight::default()
-        }
-    }
-
-    /// Whatever numbers a material has, all numbers of its uniform are finite.
-    #[test]
-    fn every_number_of_the_uniform_is_finite() {
-        for x in [
-            f32::NAN,
-            f32::INFINITY,
-            -f32::INFINITY,
-            -1.0,
-            0.0,
-            1e-45,
-            1e30,
-        ] {
-            let axes = [
-                DetailAxis::Depth { from: x, ratio: x },
-                DetailAxis::Focus {
-                    distance: x,
-                    clear: x,
-                    ratio: x,
-                },
-                DetailAxis::Rim { power: x },
-                DetailAxis::Highlight { power: x },
-                DetailAxis::Constant(x),
-                DetailAxis::VisibleRange,
-            ];
-            let [center, half_size] = [Vec3::splat(x); 2];
-            let shapes = [
-                ProxyShape::Up,
-                ProxyShape::Ellipsoid { center, half_size },
-                ProxyShape::Cylinder { center, half_size },
-                ProxyShape::Smoothed { rounds: u32::MAX },
-            ];
-            for (k, axis) in axes.into_iter().enumerate() {
-                let light = odd(x, axis, shapes[k % shapes.len()]);
-                let uniform = ToonUniform::from(&light);
-                let text = format!("{uniform:?}");
-                let is_finite = !text.contains("NaN") && !text.contains("inf");
-                assert!(is_finite, "{x}: {text}");
-                assert_eq!(uniform, ToonUniform::from(&light.sanitized()));
-            }
-        }
-    }
-
-    #[test]
-    fn the_uniform_can_be_one() {
-        ToonUniform::assert_uniform_compat();
-    }
+    use crate::toon::Ramp;
 
     #[test]
     fn what_is_not_used_is_not_compiled() {

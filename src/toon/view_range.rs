@@ -5,25 +5,16 @@
 //! its range there between its prepass and its main pass, so the range is that of the frame itself.
 
 use bevy::{
-    app::App,
-    asset::{AssetEvent, Assets, Handle, RenderAssetUsages, uuid_handle},
+    asset::{RenderAssetUsages, uuid_handle},
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        message::MessageReader,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Query, Res, ResMut},
-    },
-    image::Image,
-    log::warn_once,
-    math::{Vec2, Vec3},
+    ecs::entity::EntityHashMap,
+    prelude::*,
     render::{
         Render, RenderApp,
         render_asset::RenderAssets,
         render_resource::{
             Extent3d, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout, TexelCopyTextureInfo,
-            TextureAspect, TextureDimension, TextureFormat,
+            TextureDimension, TextureFormat,
         },
         renderer::{RenderContext, RenderQueue, ViewQuery},
         texture::GpuImage,
@@ -60,12 +51,11 @@ impl From<&ViewRanges> for Option<&'static Handle<Image>> {
     }
 }
 
-/// Adds the texture.
 pub(super) fn add_texture(images: &mut Assets<Image>) {
     let size = Extent3d {
         width: COLUMNS,
         height: ROWS as u32,
-        depth_or_array_layers: 1,
+        ..default()
     };
     let empty = vec![0; COLUMNS as usize * ROWS * 16];
     let image = Image::new(
@@ -183,7 +173,7 @@ fn write_columns(
     let size = Extent3d {
         width,
         height: ROWS as u32,
-        depth_or_array_layers: 1,
+        ..default()
     };
     queue.write_texture(image.texture.as_image_copy(), &bytes, layout, size);
 }
@@ -207,20 +197,13 @@ fn copy_range(
         layout: TexelCopyBufferLayout::default(),
     };
     let to = TexelCopyTextureInfo {
-        texture: &image.texture,
-        mip_level: 0,
         origin: Origin3d {
             x: *column,
-            y: 0,
-            z: 0,
+            ..default()
         },
-        aspect: TextureAspect::All,
+        ..image.texture.as_image_copy()
     };
-    let texel = Extent3d {
-        width: 1,
-        height: 1,
-        depth_or_array_layers: 1,
-    };
+    // One texel.
     ctx.command_encoder()
-        .copy_buffer_to_texture(from, to, texel);
+        .copy_buffer_to_texture(from, to, Extent3d::default());
 }

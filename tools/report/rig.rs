@@ -44,7 +44,7 @@ impl Drawn {
     }
 }
 
-/// A material that shows its colour alone.
+/// A material that shows its color alone.
 pub fn unlit(color: impl Into<Color>) -> StandardMaterial {
     StandardMaterial {
         base_color: color.into(),

@@ -142,19 +142,14 @@ fn total(pixel: vec2<i32>) -> vec2<f32> {
 }
 ";
 /// The ends of the passes: how their results are returned, and how counts are returned instead.
-const ENDS: [(&str, &str); 5] = [
+const ENDS: [(&str, &str); 4] = [
     (
         "return pass_color(p);",
         "return vec4(total(pixel), p.color.r, 1.0);",
     ),
     (
-        "return packed_means(mean_down(pixel, half_box(pixel)));",
-        "let m = packed_means(mean_down(pixel, half_box(pixel)));
-         return vec4(vec2<u32>(total(pixel)), m.zw);",
-    ),
-    (
-        "return packed_means(mean_across(pixel, half_box(pixel)));",
-        "let m = packed_means(mean_across(pixel, half_box(pixel)));
+        "return packed_means(mean_along(pixel, half_box(pixel)));",
+        "let m = packed_means(mean_along(pixel, half_box(pixel)));
          return vec4(vec2<u32>(total(pixel)), m.zw);",
     ),
     (

@@ -2,11 +2,7 @@
 
 use std::time::Duration;
 
-use bevy::{
-    app::{App, Update},
-    math::UVec2,
-    window::{Window, WindowRef},
-};
+use bevy::window::WindowRef;
 
 use super::*;
 
@@ -97,15 +93,6 @@ fn every_flash_of_an_impact_counts_from_where_it_begins() {
             assert_few(&found, &format!("{drawings} at {rate}, every {every}"));
         }
     }
-}
-
-#[test]
-fn flashes_of_other_cameras_count() {
-    let mut impacts = Impacts::default();
-    let one = || impact(1, 12.0, false);
-    assert!(!impacts.start(one(), Impact::MOST_FLASHES, 0.0));
-    assert!(impacts.start(one(), Impact::MOST_FLASHES - 1, 0.0));
-    assert!(!impacts.start(one(), Impact::MOST_FLASHES - 1, 0.9));
 }
 
 fn app() -> App {

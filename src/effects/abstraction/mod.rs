@@ -1,10 +1,6 @@
 //! Fewer tones, lines and strokes, and paler colors, for what is far away.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use super::Granularity;
@@ -79,11 +75,7 @@ impl Default for Abstraction {
 impl Effect for Abstraction {
     const NAME: &'static str = "abstraction";
     const STAGE: EffectStage = EffectStage::Tone;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::abstraction",
-        source: include_str!("abstraction.wgsl"),
-        settings: Some("Abstraction"),
-    };
+    const SHADER: EffectShader = shader!("abstraction", "Abstraction");
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Abstraction",
         explanation: "Black: all detail. White: full abstraction.",

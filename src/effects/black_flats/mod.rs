@@ -1,12 +1,6 @@
 //! Fills steep slopes and dark areas with solid ink (\[CS\] 3.2, Figure 4).
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{FloatExt, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -75,11 +69,7 @@ impl BlackFlats {
 impl Effect for BlackFlats {
     const NAME: &'static str = "black_flats";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::black_flats",
-        source: include_str!("black_flats.wgsl"),
-        settings: Some("BlackFlats"),
-    };
+    const SHADER: EffectShader = shader!("black_flats", "BlackFlats");
     type Uniform = BlackFlatsUniform;
 
     fn strength(&self) -> f32 {
@@ -91,10 +81,8 @@ impl Effect for BlackFlats {
     }
 
     fn faded(self, fraction: f32) -> Self {
-        Self {
-            opacity: self.opacity * fraction,
-            ..self
-        }
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
     }
 
     fn needs(&self) -> Needs {

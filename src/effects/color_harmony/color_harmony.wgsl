@@ -26,7 +26,6 @@ struct ColorHarmony {
     amount: f32,
     mode: u32,
     square_root: u32,
-    faithful: u32,
 }
 
 // A constant where the pass defines it: see has() in map.wgsl.
@@ -35,15 +34,6 @@ fn mode_of(s: ColorHarmony) -> u32 {
     return #{EFFECT_COLOR_HARMONY_MODE}u;
 #else
     return s.mode;
-#endif
-}
-
-fn is_faithful(s: ColorHarmony) -> bool {
-#ifdef EFFECT_COLOR_HARMONY_FAITHFUL
-    let compiled = #{EFFECT_COLOR_HARMONY_FAITHFUL}u;
-    return compiled != 0u;
-#else
-    return s.faithful != 0u;
 #endif
 }
 
@@ -100,9 +90,11 @@ fn faithful_harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec
 // Changes the chroma in OKLab and keeps the lightness. A color inside the display's gamut
 // stays inside, and one outside of it does not get farther out.
 fn harmonize(s: ColorHarmony, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
-    if is_faithful(s) && mode_of(s) != MODE_TWO_HUES {
+#ifdef EFFECT_COLOR_HARMONY_FAITHFUL
+    if mode_of(s) != MODE_TWO_HUES {
         return faithful_harmonize(s, linear, d, l);
     }
+#endif
     let lab = linear_to_oklab(linear);
     let chroma = mix(lab.yz, harmonized_chroma(s, lab, d, l), s.amount);
     let changed = in_gamut(oklab_to_linear(vec3(lab.x, chroma)), lab.x, linear);

@@ -1,12 +1,6 @@
 //! Moves colors to opposite hues.
 
-use bevy::{
-    color::{Color, ColorToComponents, Oklaba},
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -118,21 +112,10 @@ impl Default for ColorHarmony {
 impl Effect for ColorHarmony {
     const NAME: &'static str = "color_harmony";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::color_harmony",
-        source: include_str!("color_harmony.wgsl"),
-        settings: Some("ColorHarmony"),
-    };
+    const SHADER: EffectShader = shader!("color_harmony", "ColorHarmony");
     type Uniform = ColorHarmonyUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         let reads_map = match self.mode {
@@ -171,9 +154,9 @@ impl Effect for ColorHarmony {
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("MODE", self.mode_number());
+        variants.number("MODE", self.mode as u32);
         variants.number("SQUARE_ROOT", u32::from(self.is_square_root()));
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.flag("FAITHFUL", self.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> ColorHarmonyUniform {
@@ -190,24 +173,13 @@ impl Effect for ColorHarmony {
             pull: self.pull,
             offset: self.offset,
             amount: self.amount,
-            mode: self.mode_number(),
+            mode: self.mode as u32,
             square_root: u32::from(self.is_square_root()),
-            faithful: u32::from(self.is_faithful()),
         }
     }
 }
 
 impl ColorHarmony {
-    /// The number of the mode in `color_harmony.wgsl`.
-    fn mode_number(&self) -> u32 {
-        match self.mode {
-            HarmonyMode::TwoHues => 0,
-            HarmonyMode::Distance => 1,
-            HarmonyMode::Rotation => 2,
-            HarmonyMode::Shade => 3,
-        }
-    }
-
     /// Whether the compiled curve is the square root: only in modes that have a curve.
     fn is_square_root(&self) -> bool {
         let follows_depth = matches!(self.mode, HarmonyMode::Distance | HarmonyMode::Rotation);
@@ -215,7 +187,7 @@ impl ColorHarmony {
     }
 
     fn is_faithful(&self) -> bool {
-        self.mode != HarmonyMode::TwoHues && self.equations == Equations::Faithful
+        self.mode != HarmonyMode::TwoHues && self.equations.is_faithful()
     }
 }
 
@@ -230,5 +202,4 @@ pub struct ColorHarmonyUniform {
     amount: f32,
     mode: u32,
     square_root: u32,
-    faithful: u32,
 }

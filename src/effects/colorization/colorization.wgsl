@@ -22,7 +22,6 @@ struct Colorization {
     hue: f32,
     amount: f32,
     mode: u32,
-    faithful: u32,
 }
 
 // A constant where the pass defines it: see has() in map.wgsl.
@@ -31,15 +30,6 @@ fn mode_of(s: Colorization) -> u32 {
     return #{EFFECT_COLORIZATION_MODE}u;
 #else
     return s.mode;
-#endif
-}
-
-fn is_faithful(s: Colorization) -> bool {
-#ifdef EFFECT_COLORIZATION_FAITHFUL
-    let compiled = #{EFFECT_COLORIZATION_FAITHFUL}u;
-    return compiled != 0u;
-#else
-    return s.faithful != 0u;
 #endif
 }
 
@@ -80,9 +70,9 @@ fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32)
     if mode_of(s) == MODE_HUE {
         return linear;
     }
-    if is_faithful(s) {
-        return faithful_colorize(s, linear, d, l);
-    }
+#ifdef EFFECT_COLORIZATION_FAITHFUL
+    return faithful_colorize(s, linear, d, l);
+#else
     let lab = linear_to_oklab(linear);
     let room = min(lab.x / s.cusp_lightness, (1.0 - lab.x) / (1.0 - s.cusp_lightness));
     var atmosphere = s.direction * (s.cusp_chroma * clamp(room, 0.0, 1.0));
@@ -92,6 +82,7 @@ fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32)
     let w = s.amount * atmosphere_weight(mode_of(s), d, l);
     let chroma = lab.yz * (1.0 - w) + atmosphere * w;
     return oklab_to_linear(vec3(lab.x, chroma));
+#endif
 }
 
 fn colorization(s: Colorization, p: Pixel) -> Pixel {

@@ -3,13 +3,7 @@
 
 mod oklab;
 
-use bevy::{
-    color::{Color, ColorToComponents, Hsva, Oklaba},
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -94,30 +88,12 @@ impl Colorization {
             ColorizationMode::Linear | ColorizationMode::SquareRoot
         )
     }
-
-    /// The number of the mode in `colorization.wgsl`.
-    fn mode_number(&self) -> u32 {
-        match self.mode {
-            ColorizationMode::KeepHue => 0,
-            ColorizationMode::Atmosphere => 1,
-            ColorizationMode::Linear => 2,
-            ColorizationMode::SquareRoot => 3,
-        }
-    }
-
-    fn is_faithful(&self) -> bool {
-        self.equations == Equations::Faithful
-    }
 }
 
 impl Effect for Colorization {
     const NAME: &'static str = "colorization";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::colorization",
-        source: include_str!("colorization.wgsl"),
-        settings: Some("Colorization"),
-    };
+    const SHADER: EffectShader = shader!("colorization", "Colorization");
     type Uniform = ColorizationUniform;
 
     fn strength(&self) -> f32 {
@@ -129,10 +105,8 @@ impl Effect for Colorization {
     }
 
     fn faded(self, fraction: f32) -> Self {
-        Self {
-            amount: self.amount * fraction,
-            ..self
-        }
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
     }
 
     fn needs(&self) -> Needs {
@@ -144,8 +118,8 @@ impl Effect for Colorization {
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("MODE", self.mode_number());
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.number("MODE", self.mode as u32);
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> ColorizationUniform {
@@ -175,21 +149,20 @@ impl Effect for Colorization {
                 0.0
             },
             amount: self.amount,
-            mode: self.mode_number(),
-            faithful: u32::from(self.is_faithful()),
+            mode: self.mode as u32,
         }
     }
 
     fn same_modes(&self, other: &Self) -> bool {
         // With the faithful equations, hues between two colors are unrelated to both, so
         // colors are not interpolated but count as modes.
-        let colors_mix = !self.is_faithful() || self.color == other.color;
+        let colors_mix = !self.equations.is_faithful() || self.color == other.color;
         colors_mix && same_modes(self, other)
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
         let mixed = mix_fields(self, other, t);
-        if self.is_faithful() {
+        if self.equations.is_faithful() {
             Self {
                 color: self.color,
                 ..mixed
@@ -209,5 +182,4 @@ pub struct ColorizationUniform {
     hue: f32,
     amount: f32,
     mode: u32,
-    faithful: u32,
 }

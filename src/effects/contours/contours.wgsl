@@ -28,7 +28,6 @@ struct Contours {
     // Fraction of the opacity that is lost at the far end of the depth map.
     opacity_fade: f32,
     operator_kind: u32,
-    faithful: u32,
 }
 
 // The slope of the plane through the center, from two opposite neighbors at the same
@@ -169,23 +168,16 @@ fn operator_of(s: Contours) -> u32 {
 #endif
 }
 
-fn is_faithful(s: Contours) -> bool {
-#ifdef EFFECT_CONTOURS_FAITHFUL
-    let compiled = #{EFFECT_CONTOURS_FAITHFUL}u;
-    return compiled != 0u;
-#else
-    return s.faithful != 0u;
-#endif
-}
-
 fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
     if has(f, EMPTY) {
         return 0.0;
     }
-    if is_faithful(s) {
-        return faithful_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
-    }
-    return scaled_response(operator_of(s), plane_steps(f, gap_behind(f, f.sky_gap), win));
+    let gap = gap_behind(f, f.sky_gap);
+#ifdef EFFECT_CONTOURS_FAITHFUL
+    return faithful_response(f, gap, operator_of(s), win);
+#else
+    return scaled_response(operator_of(s), plane_steps(f, gap, win));
+#endif
 }
 
 // Strength of the line at this response, 0 to 1.
@@ -211,12 +203,12 @@ fn tap_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample
 // taps stay where they are, so that lines keep their width, but slopes are those between
 // pixels of the depth texture: between the taps, a slope would be a staircase.
 fn tap_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
-    if is_faithful(s) {
-        // Slopes have lines, so the whole window lies on the depth texture.
-        let texels = max(i32(round(f32(reach) * view.depth_scale.y)), 1);
-        let win = load_texel_window(pixel, texels, sample);
-        return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
-    }
+#ifdef EFFECT_CONTOURS_FAITHFUL
+    // Slopes have lines, so the whole window lies on the depth texture.
+    let texels = max(i32(round(f32(reach) * view.depth_scale.y)), 1);
+    let win = load_texel_window(pixel, texels, sample);
+    return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+#else
     let win = load_window(pixel, reach, sample);
     if has(frame, EMPTY) {
         return vec2(0.0, nearest_depth(win));
@@ -230,6 +222,7 @@ fn tap_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample
     let gap = gap_behind(frame, frame.sky_gap);
     let steps = uneven_plane_steps(frame, gap, win, vec4<f32>(distances), slope);
     return vec2(line(s, scaled_response(operator_of(s), steps)), nearest_depth(win));
+#endif
 }
 
 // The slope of the plane per pixel of the depth texture, across and down, from a window

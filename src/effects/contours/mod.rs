@@ -2,13 +2,7 @@
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -100,23 +94,10 @@ impl Default for Contours {
 impl Effect for Contours {
     const NAME: &'static str = "contours";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::contours",
-        source: include_str!("contours.wgsl"),
-        settings: Some("Contours"),
-    };
+    const SHADER: EffectShader = shader!("contours", "Contours");
     type Uniform = ContoursUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        Self {
-            opacity: self.opacity * fraction,
-            ..self
-        }
-    }
+    fades_by!(opacity);
 
     fn needs(&self) -> Needs {
         Needs::MAP
@@ -124,8 +105,8 @@ impl Effect for Contours {
 
     fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         let radius = self.radius(view);
-        variants.number("OPERATOR", self.operator_number());
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.number("OPERATOR", self.operator as u32);
+        variants.flag("FAITHFUL", self.equations.is_faithful());
         variants.flag("WHOLE", radius.fract() == 0.0);
         variants.flag("SINGLE_RING", radius == 1.0 || radius == 2.0);
         variants.flag("STEADY", self.opacity_fade == 0.0);
@@ -134,7 +115,7 @@ impl Effect for Contours {
     /// The response is at most the square root of 2 times the largest departure: each
     /// component of a gradient is a mean of departures.
     fn affected_area(&self, view: &EffectContext) -> AffectedArea {
-        if self.is_faithful() {
+        if self.equations.is_faithful() {
             return AffectedArea::Everywhere;
         }
         AffectedArea::AtJumps(MapJumps {
@@ -152,8 +133,7 @@ impl Effect for Contours {
             high: self.threshold + half_ramp,
             radius: self.radius(view),
             opacity_fade: self.opacity_fade,
-            operator_kind: self.operator_number(),
-            faithful: u32::from(self.is_faithful()),
+            operator_kind: self.operator as u32,
         }
     }
 }
@@ -176,20 +156,6 @@ impl Contours {
     fn half_ramp(&self) -> f32 {
         self.threshold * self.softness.max(1e-3)
     }
-
-    fn is_faithful(&self) -> bool {
-        self.equations == Equations::Faithful
-    }
-
-    /// The number of the operator in `contours.wgsl`.
-    fn operator_number(&self) -> u32 {
-        match self.operator {
-            ContourOperator::Prewitt => 0,
-            ContourOperator::Sobel => 1,
-            ContourOperator::Laplace => 2,
-            ContourOperator::Roberts => 3,
-        }
-    }
 }
 
 /// The uniform: `Contours` in `contours.wgsl`.
@@ -202,5 +168,4 @@ pub struct ContoursUniform {
     radius: f32,
     opacity_fade: f32,
     operator_kind: u32,
-    faithful: u32,
 }

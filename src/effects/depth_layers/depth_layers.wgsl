@@ -38,24 +38,16 @@ struct DepthLayers {
     amount: f32,
 }
 
-// Whether some layer has bands. A constant where the pass defines it: see has() in map.wgsl.
-fn has_bands() -> bool {
-#ifdef EFFECT_DEPTH_LAYERS_BANDS
-    let compiled = #{EFFECT_DEPTH_LAYERS_BANDS}u;
-    return compiled != 0u;
-#else
-    return true;
-#endif
-}
-
 // The lightness of a layer. `change`: of the lightness, over a pixel.
 fn layer_lightness(s: LayerColors, lightness: f32, change: f32) -> f32 {
     var tone = lightness;
-    if has_bands() && s.bands >= 2.0 {
+#ifdef EFFECT_DEPTH_LAYERS_BANDS
+    if s.bands >= 2.0 {
         tone = banded(s.bands, lightness, change);
-    } else if has_bands() && s.bands >= 1.0 {
+    } else if s.bands >= 1.0 {
         tone = 0.5;
     }
+#endif
     return s.contrast * tone + s.shift;
 }
 

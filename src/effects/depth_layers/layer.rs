@@ -1,11 +1,6 @@
 //! What a layer changes.
 
-use bevy::{
-    color::{Color, ColorToComponents, Oklaba},
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{BlendField, FieldRange, HueWheel, NotFinite, color_serde, impl_sanitized};

@@ -2,12 +2,7 @@
 
 mod layer;
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 pub use layer::DepthLayer;
@@ -119,25 +114,14 @@ impl Default for DepthLayers {
 impl Effect for DepthLayers {
     const NAME: &'static str = "depth_layers";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::depth_layers",
-        source: include_str!("depth_layers.wgsl"),
-        settings: Some("DepthLayers"),
-    };
+    const SHADER: EffectShader = shader!("depth_layers", "DepthLayers");
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Depth layers",
         explanation: "The layers of the picture: foreground in red, middle in yellow, background in blue.",
     });
     type Uniform = DepthLayersUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::MAP | Needs::DEPTH;
@@ -159,7 +143,7 @@ impl Effect for DepthLayers {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.flag("OBJECTS", self.granularity == Granularity::Object);
-        variants.number("BANDS", u32::from(self.has_bands()));
+        variants.flag("BANDS", self.has_bands());
     }
 
     fn uniform(&self, _: &EffectContext) -> DepthLayersUniform {
@@ -167,10 +151,7 @@ impl Effect for DepthLayers {
             foreground: self.foreground.colors(),
             middle: self.middle.colors(),
             background: self.background.colors(),
-            borders: Vec2::new(
-                self.foreground_end,
-                self.background_start.max(self.foreground_end),
-            ),
+            borders: self.fixed_borders().into(),
             softness: self.softness,
             amount: self.amount,
         }
@@ -192,15 +173,21 @@ impl DepthLayers {
     };
 
     fn has_bands(&self) -> bool {
-        [self.foreground, self.middle, self.background]
-            .iter()
-            .any(|layer| layer.bands > 0)
+        self.layers().iter().any(|layer| layer.bands > 0)
     }
-}
 
-impl DepthLayers {
+    fn layers(&self) -> [DepthLayer; 3] {
+        [self.foreground, self.middle, self.background]
+    }
+
+    /// Where the layers meet if they do not follow the scene.
+    fn fixed_borders(&self) -> [f32; 2] {
+        let first = self.foreground_end;
+        [first, self.background_start.max(first)]
+    }
+
     fn line_layers(&self) -> Option<LineLayers> {
-        let depth_layers = [self.foreground, self.middle, self.background];
+        let depth_layers = self.layers();
         let part = |factor: f32| 1.0 + (factor - 1.0) * self.amount;
         let widths = depth_layers.map(|layer| part(layer.line_width));
         let opacities = depth_layers.map(|layer| part(layer.line_opacity));
@@ -212,10 +199,7 @@ impl DepthLayers {
             opacities,
             colors: depth_layers.map(|layer| layer.line_color.to_linear()),
             color_amounts,
-            borders: [
-                self.foreground_end,
-                self.background_start.max(self.foreground_end),
-            ],
+            borders: self.fixed_borders(),
             finds_borders: self.borders == LayerBorders::Auto,
             by_objects: self.granularity == Granularity::Object,
             softness: self.softness,

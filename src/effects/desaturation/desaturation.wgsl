@@ -16,7 +16,6 @@ struct Desaturation {
     // Formula of the exponent: CURVE_LINEAR (1), CURVE_ROOT (0.5) or CURVE_POWER
     // (any).
     curve: u32,
-    faithful: u32,
 }
 
 // A constant where the pass defines it: see has() in map.wgsl.
@@ -25,15 +24,6 @@ fn curve_of(s: Desaturation) -> u32 {
     return #{EFFECT_DESATURATION_CURVE}u;
 #else
     return s.curve;
-#endif
-}
-
-fn is_faithful(s: Desaturation) -> bool {
-#ifdef EFFECT_DESATURATION_FAITHFUL
-    let compiled = #{EFFECT_DESATURATION_FAITHFUL}u;
-    return compiled != 0u;
-#else
-    return s.faithful != 0u;
 #endif
 }
 
@@ -55,13 +45,14 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
 // gray has the same luminance or, with the faithful equations, the same HSV value, which
 // makes colors brighter ([CS] Eq. 5).
 fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
-    if is_faithful(s) {
-        let c = srgb_encode(linear);
-        let value = vec3(largest(c));
-        return srgb_decode(value * (1.0 - k) + c * k);
-    }
+#ifdef EFFECT_DESATURATION_FAITHFUL
+    let c = srgb_encode(linear);
+    let value = vec3(largest(c));
+    return srgb_decode(value * (1.0 - k) + c * k);
+#else
     let gray = vec3(luminance(linear));
     return gray * (1.0 - k) + linear * k;
+#endif
 }
 
 fn desaturation(s: Desaturation, p: Pixel) -> Pixel {

@@ -1,10 +1,6 @@
 //! Removes saturation with distance (\[CS\] Eq. 5 to 7).
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -61,21 +57,15 @@ impl Desaturation {
     /// Saturation falls with the square root of `1 - D`; HSV value is kept (\[CS\]
     /// Eq. 7 as printed).
     pub const SQUARE_ROOT: Self = Self {
-        amount: 1.0,
-        amount_near: 0.0,
         exponent: 0.5,
-        equations: Equations::Faithful,
+        ..Self::LINEAR
     };
 }
 
 impl Effect for Desaturation {
     const NAME: &'static str = "desaturation";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::desaturation",
-        source: include_str!("desaturation.wgsl"),
-        settings: Some("Desaturation"),
-    };
+    const SHADER: EffectShader = shader!("desaturation", "Desaturation");
     type Uniform = DesaturationUniform;
 
     fn strength(&self) -> f32 {
@@ -96,7 +86,7 @@ impl Effect for Desaturation {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("CURVE", self.curve());
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, _: &EffectContext) -> DesaturationUniform {
@@ -105,7 +95,6 @@ impl Effect for Desaturation {
             amount_near: self.amount_near,
             exponent: self.exponent,
             curve: self.curve(),
-            faithful: u32::from(self.is_faithful()),
         }
     }
 }
@@ -119,10 +108,6 @@ impl Desaturation {
             _ => 2,
         }
     }
-
-    fn is_faithful(&self) -> bool {
-        self.equations == Equations::Faithful
-    }
 }
 
 /// The uniform: `Desaturation` in `desaturation.wgsl`.
@@ -132,5 +117,4 @@ pub struct DesaturationUniform {
     amount_near: f32,
     exponent: f32,
     curve: u32,
-    faithful: u32,
 }

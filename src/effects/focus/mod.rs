@@ -1,11 +1,6 @@
 //! Leaves what is nearer or farther than a distance out of focus.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec4Swizzles},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -114,11 +109,7 @@ impl Default for Focus {
 impl Effect for Focus {
     const NAME: &'static str = "focus";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::focus",
-        source: include_str!("focus.wgsl"),
-        settings: Some("Focus"),
-    };
+    const SHADER: EffectShader = shader!("focus", "Focus");
     const HALF_BOX: bool = true;
     const AUX_SCALAR: bool = true;
     type Uniform = FocusUniform;
@@ -210,7 +201,6 @@ impl Focus {
         }
     }
 
-    /// The largest radius in physical pixels.
     fn physical_radius(&self, view: &EffectContext) -> f32 {
         (self.radius * view.scale_factor).min(256.0)
     }

@@ -1,17 +1,7 @@
 //! Prints the picture with screens of dots or lines.
 
-mod kinds;
-
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
-
-pub use kinds::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape};
 
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
@@ -112,6 +102,77 @@ pub struct Halftone {
     pub opacity: f32,
 }
 
+/// Which plates a [`Halftone`] prints.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+#[repr(u32)]
+pub enum HalftoneMode {
+    /// Cyan, magenta, yellow and black.
+    #[default]
+    Cmyk = 0,
+    /// One plate, in the black ink, by the darkness of the picture.
+    Spot = 1,
+    /// Two plates by the darkness of the picture: the cyan ink, which is solid where the
+    /// picture is as dark as that ink, and from there on the black ink.
+    Duotone = 2,
+    /// Lights of red, green and blue on a black ground: a screen, not a print.
+    Rgb = 3,
+}
+
+/// What a screen of a [`Halftone`] consists of.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+#[repr(u32)]
+pub enum ScreenShape {
+    /// Discs that grow until they overlap: Ben-Day dots.
+    Round = 0,
+    /// Discs in the lights, a checkerboard in the middle tones, holes in the shadows.
+    #[default]
+    Euclidean = 1,
+    /// Lines that grow wider.
+    Line = 2,
+    /// Diamonds that touch at half the tone.
+    Diamond = 3,
+    /// Lines in two directions.
+    Cross = 4,
+    /// Square grains in an even, irregular distribution (blue noise; void and cluster,
+    /// Ulichney 1993). Angles do not matter.
+    Stochastic = 5,
+}
+
+/// Where a [`Halftone`] reads the tone of a dot.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum ScreenSampling {
+    /// At every pixel: dots are cut off at the edges of things, so details stay sharp.
+    #[default]
+    Pixel,
+    /// At four places of the cell: dots are whole. Reads the picture four times for each
+    /// plate, and draws it in two passes. [`ScreenShape::Stochastic`] reads pixels.
+    Cell,
+}
+
+/// Where the screens of a [`Halftone`] are fixed.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum ScreenAnchor {
+    /// At the middle of the viewport: each view is a page.
+    #[default]
+    View,
+    /// At the middle of the render target: in a split screen, the screens of all views are
+    /// one.
+    Window,
+    /// At the objects with a [`PatternAnchor`](crate::objects::PatternAnchor): dots move, turn and
+    /// grow with each of them. Elsewhere as [`ScreenAnchor::View`]. While there are such objects,
+    /// object ids are drawn, which needs the crate's feature `objects`. Grains of
+    /// [`ScreenShape::Stochastic`] move, but neither turn nor grow.
+    Object,
+}
+
 impl Default for Halftone {
     fn default() -> Self {
         Self {
@@ -145,21 +206,10 @@ impl Default for Halftone {
 impl Effect for Halftone {
     const NAME: &'static str = "halftone";
     const STAGE: EffectStage = EffectStage::Print;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::halftone",
-        source: include_str!("halftone.wgsl"),
-        settings: Some("Halftone"),
-    };
+    const SHADER: EffectShader = shader!("halftone", "Halftone");
     type Uniform = HalftoneUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();

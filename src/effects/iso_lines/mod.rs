@@ -1,12 +1,6 @@
 //! Draws lines of equal depth, height or distance (Saito and Takahashi 1990).
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Mat4, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -87,11 +81,7 @@ impl Default for IsoLines {
 impl Effect for IsoLines {
     const NAME: &'static str = "iso_lines";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::iso_lines",
-        source: include_str!("iso_lines.wgsl"),
-        settings: Some("IsoLines"),
-    };
+    const SHADER: EffectShader = shader!("iso_lines", "IsoLines");
     type Uniform = IsoLinesUniform;
 
     fn sanitized(self) -> Self {
@@ -102,14 +92,7 @@ impl Effect for IsoLines {
         }
     }
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn needs(&self) -> Needs {
         match self.field {
@@ -120,7 +103,7 @@ impl Effect for IsoLines {
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("FIELD", self.field_number());
+        variants.number("FIELD", self.field as u32);
     }
 
     fn uniform(&self, view: &EffectContext) -> IsoLinesUniform {
@@ -142,21 +125,10 @@ impl Effect for IsoLines {
             half_width: half(self.width),
             major_half_width: half(self.major_width),
             major: self.major as i32,
-            field: self.field_number(),
+            field: self.field as u32,
             eye: view.eye,
             offset: offset.rem_euclid(cycle) as f32,
             arm: arm.as_vec3(),
-        }
-    }
-}
-
-impl IsoLines {
-    /// The number of the field in `iso_lines.wgsl`.
-    fn field_number(&self) -> u32 {
-        match self.field {
-            IsoField::Depth => 0,
-            IsoField::Height => 1,
-            IsoField::Distance => 2,
         }
     }
 }

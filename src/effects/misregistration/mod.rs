@@ -1,11 +1,6 @@
 //! Prints the plates of the picture out of register.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -74,21 +69,10 @@ impl Default for Misregistration {
 impl Effect for Misregistration {
     const NAME: &'static str = "misregistration";
     const STAGE: EffectStage = EffectStage::Print;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::misregistration",
-        source: include_str!("misregistration.wgsl"),
-        settings: Some("Misregistration"),
-    };
+    const SHADER: EffectShader = shader!("misregistration", "Misregistration");
     type Uniform = MisregistrationUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::PICTURE

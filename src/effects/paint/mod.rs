@@ -1,10 +1,6 @@
 //! Turns the picture into flat strokes of paint with firm edges.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -79,11 +75,7 @@ impl Default for Paint {
 impl Effect for Paint {
     const NAME: &'static str = "paint";
     const STAGE: EffectStage = EffectStage::Color;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::paint",
-        source: include_str!("paint.wgsl"),
-        settings: Some("Paint"),
-    };
+    const SHADER: EffectShader = shader!("paint", "Paint");
     const HALF_BOX: bool = true;
     type Uniform = PaintUniform;
 

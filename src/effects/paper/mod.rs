@@ -1,12 +1,6 @@
 //! The sheet that the picture is printed on.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec3, Vec4Swizzles},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -102,25 +96,23 @@ impl Default for Paper {
 impl Effect for Paper {
     const NAME: &'static str = "paper";
     const STAGE: EffectStage = EffectStage::Page;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::paper",
-        source: include_str!("paper.wgsl"),
-        settings: Some("Paper"),
-    };
+    const SHADER: EffectShader = shader!("paper", "Paper");
     type Uniform = PaperUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
+        let inked = self.ink_bleed > 0.0 || self.dry_brush > 0.0;
+        let sheet = || Sheet {
+            ink_bleed: self.amount * self.ink_bleed * view.scale_factor,
+            dry_brush: self.amount * self.dry_brush,
+            corner: self.corner(view),
+            scale: self.scale(view),
+            unit: view.scale_factor,
+            seed: view.animation_seed(self.rate),
+        };
         LineModifiers {
-            sheet: self.line_sheet(view),
+            sheet: inked.then(sheet),
             ..LineModifiers::default()
         }
     }
@@ -154,20 +146,6 @@ impl Paper {
             PaperAnchor::Window => Vec2::ZERO,
             PaperAnchor::View => view.viewport.xy().as_vec2(),
         }
-    }
-}
-
-impl Paper {
-    fn line_sheet(&self, view: &EffectContext) -> Option<Sheet> {
-        let inked = self.ink_bleed > 0.0 || self.dry_brush > 0.0;
-        inked.then(|| Sheet {
-            ink_bleed: self.amount * self.ink_bleed * view.scale_factor,
-            dry_brush: self.amount * self.dry_brush,
-            corner: self.corner(view),
-            scale: self.scale(view),
-            unit: view.scale_factor,
-            seed: view.animation_seed(self.rate),
-        })
     }
 }
 

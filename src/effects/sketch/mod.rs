@@ -1,12 +1,6 @@
 //! Draws the outlines as ink on paper (\[CL\] 3.2, Figure 8).
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use super::Outlines;
@@ -87,24 +81,11 @@ impl Default for Sketch {
 impl Effect for Sketch {
     const NAME: &'static str = "sketch";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::sketch",
-        source: include_str!("sketch.wgsl"),
-        settings: Some("Sketch"),
-    };
+    const SHADER: EffectShader = shader!("sketch", "Sketch");
     const REPLACES: &'static [&'static str] = &[Outlines::NAME];
     type Uniform = SketchUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        Self {
-            amount: self.amount * fraction,
-            ..self
-        }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::LINES | Needs::LINES_ANYWHERE

@@ -1,12 +1,6 @@
 //! Draws focus lines and speed lines.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -101,25 +95,14 @@ impl Default for SpeedLines {
 impl Effect for SpeedLines {
     const NAME: &'static str = "speed_lines";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::speed_lines",
-        source: include_str!("speed_lines.wgsl"),
-        settings: Some("SpeedLines"),
-    };
+    const SHADER: EffectShader = shader!("speed_lines", "SpeedLines");
     type Uniform = SpeedLinesUniform;
 
-    fn strength(&self) -> f32 {
-        self.opacity
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let opacity = self.opacity * fraction;
-        Self { opacity, ..self }
-    }
+    fades_by!(opacity);
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("KIND", self.kind as u32);
-        variants.number("DRY", u32::from(self.dry_brush > 0.0));
+        variants.flag("DRY", self.dry_brush > 0.0);
     }
 
     fn uniform(&self, view: &EffectContext) -> SpeedLinesUniform {

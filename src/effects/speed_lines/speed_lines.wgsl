@@ -45,15 +45,6 @@ fn kind_of(s: SpeedLines) -> u32 {
 #endif
 }
 
-fn is_dry(s: SpeedLines) -> bool {
-#ifdef EFFECT_SPEED_LINES_DRY
-    let compiled = #{EFFECT_SPEED_LINES_DRY}u;
-    return compiled != 0u;
-#else
-    return s.dry_brush > 0.0;
-#endif
-}
-
 // Three random numbers from 0 to 1.
 fn three(h: u32) -> vec3<f32> {
     return vec3(f32(h & 2047u) / 2047.0, f32((h >> 11u) & 2047u) / 2047.0, f32(h >> 22u) / 1023.0);
@@ -100,10 +91,11 @@ fn place_in_cell(random: f32) -> f32 {
 // Fraction of a line that a dry brush leaves: streaks along the line. `d`: place along and
 // across it.
 fn dry_ink(s: SpeedLines, seed: u32, d: vec2<f32>) -> f32 {
-    if !is_dry(s) {
-        return 1.0;
-    }
+#ifdef EFFECT_SPEED_LINES_DRY
     return bristles(s.dry_brush, wave(d / (s.unit * vec2(60.0, 1.6)), seed));
+#else
+    return 1.0;
+#endif
 }
 
 // Coverage of one radial line. `u`: direction of the pixel in cells; `rho`: its distance

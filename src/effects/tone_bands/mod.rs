@@ -1,10 +1,6 @@
 //! Divides the picture into areas of uniform tone (\[CL\] 3.1, Eq. 6).
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -57,34 +53,21 @@ impl Default for ToneBands {
 impl Effect for ToneBands {
     const NAME: &'static str = "tone_bands";
     const STAGE: EffectStage = EffectStage::Tone;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::tone_bands",
-        source: include_str!("tone_bands.wgsl"),
-        settings: Some("ToneBands"),
-    };
+    const SHADER: EffectShader = shader!("tone_bands", "ToneBands");
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Tone bands",
         explanation: "The lightness of the picture after banding.",
     });
     type Uniform = ToneBandsUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        Self {
-            amount: self.amount * fraction,
-            ..self
-        }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::LIGHTNESS_CHANGE
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
-        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.flag("FAITHFUL", self.equations.is_faithful());
     }
 
     fn uniform(&self, view: &EffectContext) -> ToneBandsUniform {
@@ -92,14 +75,7 @@ impl Effect for ToneBands {
             levels: self.levels as f32,
             softness: self.softness * view.scale_factor,
             amount: self.amount,
-            faithful: u32::from(self.is_faithful()),
         }
-    }
-}
-
-impl ToneBands {
-    fn is_faithful(&self) -> bool {
-        self.equations == Equations::Faithful
     }
 }
 
@@ -109,5 +85,4 @@ pub struct ToneBandsUniform {
     levels: f32,
     softness: f32,
     amount: f32,
-    faithful: u32,
 }

@@ -11,17 +11,6 @@ struct ToneBands {
     // Width of the step between two bands, physical pixels.
     softness: f32,
     amount: f32,
-    faithful: u32,
-}
-
-// A constant where the pass defines it: see has() in map.wgsl.
-fn is_faithful(s: ToneBands) -> bool {
-#ifdef EFFECT_TONE_BANDS_FAITHFUL
-    let compiled = #{EFFECT_TONE_BANDS_FAITHFUL}u;
-    return compiled != 0u;
-#else
-    return s.faithful != 0u;
-#endif
 }
 
 // Compresses one channel of a display code in three ranges ([CL] Eq. 6, without its
@@ -65,14 +54,13 @@ fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
 }
 
 fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32, splits: f32) -> vec3<f32> {
-    var banded: vec3<f32>;
-    if is_faithful(s) {
-        let c = srgb_encode(linear);
-        banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
-    } else {
-        let tone = band_tone(s, lightness(linear), change, splits);
-        banded = with_luminance(linear, tone * tone);
-    }
+#ifdef EFFECT_TONE_BANDS_FAITHFUL
+    let c = srgb_encode(linear);
+    let banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
+#else
+    let tone = band_tone(s, lightness(linear), change, splits);
+    let banded = with_luminance(linear, tone * tone);
+#endif
     return mix(linear, banded, s.amount);
 }
 

@@ -1,12 +1,6 @@
 //! Tones by the lightness of the picture, which change with depth.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -112,21 +106,10 @@ impl Default for ToneRamp {
 impl Effect for ToneRamp {
     const NAME: &'static str = "tone_ramp";
     const STAGE: EffectStage = EffectStage::Tone;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::tone_ramp",
-        source: include_str!("tone_ramp.wgsl"),
-        settings: Some("ToneRamp"),
-    };
+    const SHADER: EffectShader = shader!("tone_ramp", "ToneRamp");
     type Uniform = ToneRampUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::LIGHTNESS_CHANGE;

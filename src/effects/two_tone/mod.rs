@@ -1,12 +1,6 @@
 //! Two tones, divided by lightness.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -75,21 +69,10 @@ impl TwoTone {
 impl Effect for TwoTone {
     const NAME: &'static str = "two_tone";
     const STAGE: EffectStage = EffectStage::Ink;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::two_tone",
-        source: include_str!("two_tone.wgsl"),
-        settings: Some("TwoTone"),
-    };
+    const SHADER: EffectShader = shader!("two_tone", "TwoTone");
     type Uniform = TwoToneUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn needs(&self) -> Needs {
         Needs::LIGHTNESS_CHANGE

@@ -1,12 +1,6 @@
 //! Mixes a color into the corners of the picture.
 
-use bevy::{
-    color::Color,
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -55,21 +49,10 @@ impl Default for Vignette {
 impl Effect for Vignette {
     const NAME: &'static str = "vignette";
     const STAGE: EffectStage = EffectStage::Page;
-    const SHADER: EffectShader = EffectShader {
-        path: "bevy_comics::effects::vignette",
-        source: include_str!("vignette.wgsl"),
-        settings: Some("Vignette"),
-    };
+    const SHADER: EffectShader = shader!("vignette", "Vignette");
     type Uniform = VignetteUniform;
 
-    fn strength(&self) -> f32 {
-        self.amount
-    }
-
-    fn faded(self, fraction: f32) -> Self {
-        let amount = self.amount * fraction;
-        Self { amount, ..self }
-    }
+    fades_by!(amount);
 
     fn uniform(&self, view: &EffectContext) -> VignetteUniform {
         let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32).max(Vec2::ONE);

@@ -1,9 +1,6 @@
 //! What lies between two values.
 
-use bevy::{
-    color::{Color, ColorToComponents, Oklaba},
-    reflect::PartialReflect,
-};
+use bevy::prelude::*;
 
 use super::places::{Place, components, is_color, made};
 use crate::{

@@ -1,14 +1,10 @@
 //! Clamps that do not follow from the range of a field alone, and expected values by hand.
 
-use bevy::{
-    color::Color,
-    math::{Vec2, Vec3},
-};
+use bevy::prelude::*;
 
 use super::non_finite::{Numbers, cases};
 use crate::{
-    BlackFlats, Contours, DepthLayers, DepthMap, DepthMapping, Effect, IsoLines, Outlines,
-    SpeedLines, ToneBands,
+    BlackFlats, DepthLayers, DepthMap, DepthMapping, Effect, IsoLines, Outlines, SpeedLines,
     effects::DepthLayer,
     lines::{Creases, EdgeColor, EdgeStyle, LineColor, LineFog},
 };
@@ -16,33 +12,32 @@ use crate::{
 const NAN: f32 = f32::NAN;
 
 #[test]
-fn numbers_are_clamped_to_these_ranges() {
-    let contours = |threshold, width, softness| Contours {
-        threshold,
-        width,
-        softness,
-        ..Contours::default()
-    };
-    assert_eq!(
-        contours(-1.0, 99.0, 0.75).sanitized(),
-        contours(1e-6, 16.0, 0.75)
-    );
-    let bands = |levels, softness, amount| ToneBands {
-        levels,
-        softness,
-        amount,
-        ..ToneBands::default()
-    };
-    assert_eq!(bands(0, -1.0, 2.0).sanitized(), bands(2, 0.0, 1.0));
-    assert_eq!(bands(1_000_000, 99.0, 0.5).sanitized().levels, 8);
-    let counts = |min_length, gap_closing, hold_frames| Outlines {
-        min_length,
-        gap_closing,
-        hold_frames,
-        ..Outlines::default()
-    };
-    assert_eq!(counts(0, 9, 9).sanitized(), counts(1, 3, 8));
-    assert_eq!(counts(u32::MAX, 2, 5).sanitized(), counts(8, 2, 5));
+fn numbers_are_clamped_to_the_ends_of_their_ranges() {
+    let default = SpeedLines::default();
+    let inside = [1.0, 7.5, 40.0].map(|x| (x, x));
+    let outside = [(f32::MIN, 1.0), (40.1, 40.0), (f32::MAX, 40.0)];
+    let odd = [NAN, f32::INFINITY, f32::NEG_INFINITY].map(|x| (x, default.width));
+    for (width, used) in [inside, outside, odd].concat() {
+        let lines = SpeedLines { width, ..default };
+        assert_eq!(lines.sanitized().width, used, "{width}");
+    }
+    for (count, used) in [(0, 20), (20, 20), (77, 77), (401, 400), (u32::MAX, 400)] {
+        let lines = SpeedLines { count, ..default };
+        assert_eq!(lines.sanitized().count, used);
+    }
+    for ([red, green, blue], used) in [
+        ([0.25, 0.5, 0.75], LinearRgba::rgb(0.25, 0.5, 0.75)),
+        ([2.0, -1.0, 0.5], LinearRgba::rgb(1.0, 0.0, 0.5)),
+        ([NAN, 0.5, 0.5], default.color.to_linear()),
+    ] {
+        let color = Color::linear_rgb(red, green, blue);
+        let lines = SpeedLines { color, ..default };
+        assert_eq!(lines.sanitized().color.to_linear(), used);
+    }
+}
+
+#[test]
+fn components_of_vectors_are_clamped_each() {
     let lines = SpeedLines {
         center: Vec2::new(-7.0, NAN),
         ..SpeedLines::default()

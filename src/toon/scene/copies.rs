@@ -1,16 +1,10 @@
 //! The toon copies of standard materials, which scenes with equal settings share.
 
 use bevy::{
-    asset::{AssetEvent, AssetId, Assets, Handle},
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        message::MessageReader,
-        resource::Resource,
-        system::{Res, ResMut, SystemParam},
-    },
+    ecs::{entity::EntityHashMap, system::SystemParam},
     material::OpaqueRendererMethod,
-    pbr::StandardMaterial,
     platform::collections::{HashMap, HashSet},
+    prelude::*,
 };
 
 use super::{Original, ToonScene};

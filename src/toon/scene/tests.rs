@@ -1,11 +1,5 @@
 //! Scenes share copies, and follow what changes.
 
-use bevy::{
-    app::{App, TaskPoolPlugin, Update},
-    asset::{Asset, AssetApp, AssetPlugin},
-    ecs::schedule::IntoScheduleConfigs,
-};
-
 use super::*;
 
 /// The part of the plugin that shadings and scenes need.

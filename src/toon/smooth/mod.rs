@@ -3,17 +3,9 @@
 mod normals;
 
 use bevy::{
-    asset::{AssetEvent, AssetId, Assets},
-    ecs::{
-        message::MessageReader,
-        query::{Changed, Or, With},
-        resource::Resource,
-        system::{Query, Res, ResMut},
-    },
-    log::warn_once,
-    mesh::{Mesh, Mesh3d, VertexAttributeValues},
-    pbr::MeshMaterial3d,
+    mesh::VertexAttributeValues,
     platform::collections::{HashMap, HashSet},
+    prelude::*,
     tasks::{AsyncComputeTaskPool, Task, futures::check_ready},
 };
 
@@ -35,7 +27,6 @@ struct SmoothMesh {
     own_events: usize,
 }
 
-/// The rounds that a material asks for.
 fn rounds_of(material: &ToonMaterial) -> Option<u32> {
     match material.extension.proxy?.sanitized().shape {
         ProxyShape::Smoothed { rounds } => Some(rounds),

@@ -10,9 +10,9 @@ const HARMONY: &str = "#import bevy_comics::effects::color_harmony::{ColorHarmon
 
 /// Evaluates rows of settings, a color and depth.
 const BODY: &str = "let s = ColorHarmony(
-        vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u), u(8u), u(9u),
+        vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u), u(8u),
     );
-    return vec4(harmonize(s, vec3(i(10u), i(11u), i(12u)), i(13u), i(14u)), 0.0);";
+    return vec4(harmonize(s, vec3(i(9u), i(10u), i(11u)), i(12u), i(13u)), 0.0);";
 
 const MODES: [HarmonyMode; 4] = [
     HarmonyMode::TwoHues,
@@ -29,10 +29,9 @@ const MODES: [HarmonyMode; 4] = [
 const CONVERSION_ERROR: f64 = 745.0 / (1 << 24) as f64;
 
 /// What the shader takes.
-fn packed(s: &ColorHarmony, [r, g, b]: [f32; 3], (d, l): (f32, f32)) -> [f32; 15] {
+fn packed(s: &ColorHarmony, [r, g, b]: [f32; 3], (d, l): (f32, f32)) -> [f32; 14] {
     let [x, y] = color_harmony::hue(s.color);
     let mode = MODES.iter().position(|mode| *mode == s.mode);
-    let flag = |on: bool| f32::from(u8::from(on));
     [
         x as f32,
         y as f32,
@@ -42,8 +41,7 @@ fn packed(s: &ColorHarmony, [r, g, b]: [f32; 3], (d, l): (f32, f32)) -> [f32; 15
         s.offset,
         s.amount,
         mode.expect("listed") as f32,
-        flag(s.curve == HarmonyCurve::SquareRoot),
-        flag(s.equations == Equations::Faithful),
+        f32::from(u8::from(s.curve == HarmonyCurve::SquareRoot)),
         r,
         g,
         b,
@@ -79,9 +77,16 @@ type Case = (ColorHarmony, [f32; 3], (f32, f32));
 
 fn for_cases(cases: impl Strategy<Value = Case>, check: impl Fn(&Case, [f32; 4])) {
     for_batches(cases, |cases| {
-        let rows: Vec<[f32; 15]> = cases.iter().map(|(s, c, d)| packed(s, *c, *d)).collect();
-        for (case, result) in cases.iter().zip(gpu().evaluate(HARMONY, BODY, &rows)) {
-            check(case, result);
+        let rows: Vec<[f32; 14]> = cases.iter().map(|(s, c, d)| packed(s, *c, *d)).collect();
+        let corrected = gpu().evaluate(HARMONY, BODY, &rows);
+        let faithful = &[("EFFECT_COLOR_HARMONY_FAITHFUL", None)];
+        let faithful = gpu().evaluate_alone(faithful, HARMONY, BODY, &rows);
+        for (k, case) in cases.iter().enumerate() {
+            let results = match case.0.equations {
+                Equations::Faithful => &faithful,
+                _ => &corrected,
+            };
+            check(case, results[k]);
         }
     });
 }

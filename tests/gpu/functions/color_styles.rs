@@ -74,13 +74,18 @@ fn faithful_equations_keep_grays() {
     let row = (0.0f32..=1.0, wide_component(), depth_pair(), modes)
         .prop_map(|(amount, gray, (d, l), mode)| [amount, gray, d, l, mode]);
     for_batches(row, |rows| {
-        let results = gpu().evaluate(
+        let faithful = [
+            "EFFECT_DESATURATION_FAITHFUL",
+            "EFFECT_COLORIZATION_FAITHFUL",
+        ];
+        let results = gpu().evaluate_alone(
+            &faithful.map(|name| (name, None)),
             "#import bevy_comics::effects::desaturation::{Desaturation, desaturate, saturation_left}
              #import bevy_comics::effects::colorization::{Colorization, colorize}",
             "let gray = vec3(i(1u));
-             let s = Desaturation(i(0u), 0.0, 1.7, 2u, 1u);
+             let s = Desaturation(i(0u), 0.0, 1.7, 2u);
              let a = desaturate(s, gray, saturation_left(s, i(3u)));
-             let t = Colorization(vec2(0.6, 0.8), 0.7, 0.2, 0.58, i(0u), u(4u), 1u);
+             let t = Colorization(vec2(0.6, 0.8), 0.7, 0.2, 0.58, i(0u), u(4u));
              let b = colorize(t, gray, i(2u), i(3u), 0.75);
              return vec4(a.x - a.y, a.x - a.z, b.x - b.y, b.x - b.z);",
             rows,

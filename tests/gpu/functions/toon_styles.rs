@@ -41,9 +41,10 @@ const BANDS: &str = "#import bevy_comics::effects::tone_bands::{ToneBands, bande
 fn equation_6_is_closed_monotone_and_makes_white_0_83() {
     let codes = (0..=255u8).map(|c| f32::from(c) / 255.0);
     let rows: Vec<[f32; 1]> = codes.chain([0.5]).map(|c| [c]).collect();
-    let found = gpu().evaluate(
+    let found = gpu().evaluate_alone(
+        &[("EFFECT_TONE_BANDS_FAITHFUL", None)],
         &format!("{COLOR}\n{BANDS}"),
-        "let s = ToneBands(5.0, 1.0, 1.0, 1u);
+        "let s = ToneBands(5.0, 1.0, 1.0);
          return vec4(srgb_encode(banded_color(s, srgb_decode(vec3(i(0u))), 0.0, 0.0)), 0.0);",
         &rows,
     );
@@ -63,7 +64,7 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
         .collect();
     let results = gpu().evaluate(
         BANDS,
-        "let s = ToneBands(i(0u), 0.0, 1.0, 0u); let y = i(1u) * i(1u);
+        "let s = ToneBands(i(0u), 0.0, 1.0); let y = i(1u) * i(1u);
          let red = banded_color(s, y * vec3(0.2, 0.05, 0.02), 0.0, 0.0);
          return vec4(banded_color(s, vec3(y), 0.0, 0.0).x, red);",
         &rows,

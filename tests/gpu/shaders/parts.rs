@@ -113,7 +113,7 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
     });
     names.push("OVERLAY");
     if contours {
-        names.extend(["MAP", "DEPTH", "EFFECT_CONTOURS_FAITHFUL=0"]);
+        names.extend(["MAP", "DEPTH"]);
     }
     if focus {
         names.push("EFFECT_FOCUS_STYLE=4");
@@ -197,21 +197,16 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
     }
     if contours {
         names.extend(["WITHOUT_EFFECT_CONTOURS", "MAP", "DEPTH", "SAME_SIZE"]);
-        names.extend(["EFFECT_CONTOURS_OPERATOR=1", "EFFECT_CONTOURS_FAITHFUL=0"]);
+        names.push("EFFECT_CONTOURS_OPERATOR=1");
     } else {
         // Without jumps, tiles save nothing but the search for lines.
         names.push("WITHOUT_LINES");
     }
     if has(&names, "EFFECT_TONE_BANDS") {
-        names.extend(["LIGHTNESS_CHANGE", "EFFECT_TONE_BANDS_FAITHFUL=0"]);
+        names.push("LIGHTNESS_CHANGE");
     }
     if has(&names, "IN_LAYERS") {
-        names.extend([
-            "EFFECT_DEPTH_LAYERS",
-            "EFFECT_DEPTH_LAYERS_BANDS=0",
-            "MAP",
-            "DEPTH",
-        ]);
+        names.extend(["EFFECT_DEPTH_LAYERS", "MAP", "DEPTH"]);
     }
     if !has(&names, "DEPTH") {
         names.retain(|name| !matches!(*name, "SAME_SIZE" | "MULTISAMPLED" | "OBLIQUE"));
