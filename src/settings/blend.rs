@@ -195,3 +195,27 @@ fn is_interpolated(value: &dyn PartialReflect) -> bool {
         || value.try_downcast_ref::<Vec2>().is_some()
         || value.try_downcast_ref::<Vec3>().is_some()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_are_ratios() {
+        assert!((blend_ratio(1.0, 4.0, 0.5) - 2.0).abs() < 1e-6);
+        assert_eq!(blend_ratio(0.0, 4.0, 0.5), 2.0, "no ratio to zero");
+        assert_eq!(blend_ratio(3.0, 3.0, 0.3), 3.0);
+    }
+
+    #[test]
+    fn a_mode_changes_where_its_effect_has_no_strength() {
+        assert_eq!(
+            [
+                crossfade_weight(0.0),
+                crossfade_weight(0.5),
+                crossfade_weight(1.0)
+            ],
+            [1.0, 0.0, 1.0]
+        );
+    }
+}

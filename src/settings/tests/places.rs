@@ -6,7 +6,7 @@ use bevy::{
     reflect::{
         PartialReflect, ReflectRef, TypeInfo,
         attributes::CustomAttributes,
-        enums::{DynamicEnum, DynamicVariant, VariantInfo},
+        enums::{DynamicEnum, DynamicVariant, Enum, VariantInfo},
         structs::DynamicStruct,
         tuple::DynamicTuple,
     },
@@ -149,4 +149,14 @@ pub(super) fn made_variant(
         }
     };
     Some(DynamicEnum::new(variant.name(), fields))
+}
+
+/// The enum with every other variant that has fields.
+pub(super) fn other_variants(value: &dyn Enum, range: Option<FieldRange>) -> Vec<DynamicEnum> {
+    let info = value.get_represented_enum_info().expect("a type");
+    let others = info.iter().filter(|variant| {
+        !matches!(variant, VariantInfo::Unit(_)) && variant.name() != value.variant_name()
+    });
+    let made = others.filter_map(|variant| made_variant(variant, range));
+    made.collect()
 }
