@@ -13,7 +13,6 @@ pub mod forest;
 pub mod fuzz;
 pub mod headless;
 pub mod line_work;
-pub mod link_work;
 pub mod orbit;
 pub mod page_work;
 pub mod painting;
