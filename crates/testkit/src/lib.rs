@@ -2,7 +2,6 @@
 //! that renders without a window, a bare GPU device, the shipped WGSL, and the
 //! shaders' references in double precision.
 
-pub mod asked;
 pub mod before;
 pub mod bench;
 pub mod demo;

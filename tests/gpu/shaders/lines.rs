@@ -5,11 +5,6 @@ use super::{
     covering::{each, has, has_any, pairs},
 };
 
-/// Everything that the tests of this file compose.
-pub fn variants() -> Vec<Variant> {
-    [finding(), walking(), completing(), settling(), drawing()].concat()
-}
-
 /// What lines are along: the kinds of a view, and last those of highlighted objects.
 const KINDS: &str = "
     | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES
