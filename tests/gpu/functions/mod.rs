@@ -1,12 +1,10 @@
 //! Compares the crate's WGSL functions with their references, on random inputs and on
 //! edge cases.
 
-mod ambient;
 mod art_map;
 mod bend;
 mod blocks;
 mod bound;
-mod budget;
 mod color_harmony;
 mod color_styles;
 mod count;
@@ -32,7 +30,6 @@ mod proxy;
 mod ramp;
 mod ramp_map;
 mod rect;
-mod remember;
 mod ribbon;
 mod shadow_texels;
 mod sheet;

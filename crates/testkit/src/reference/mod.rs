@@ -50,7 +50,6 @@ pub mod range;
 pub mod raw;
 pub mod read;
 pub mod rect;
-pub mod remember;
 pub mod resolve;
 mod rim;
 pub mod screen;
