@@ -34,7 +34,6 @@ mod ribbon;
 mod shadow_texels;
 mod sheet;
 mod similarity;
-mod speed_lines;
 mod stroke_level;
 mod stylized_highlight;
 mod surface;

@@ -58,7 +58,6 @@ pub mod sheet;
 pub mod similarity;
 pub mod sketch;
 pub mod smoothing;
-pub mod speed_lines;
 pub mod stipple;
 mod straight;
 pub mod stylized_highlight;
