@@ -301,8 +301,8 @@ fn apart(a: Rgba, b: Rgba) -> f64 {
 }
 
 /// A style without what the reference of the whole picture does not know and other tests check:
-/// paint, hatching, iso-lines, lines in the colours of surfaces, convex and concave creases of their own,
-/// and of layers the borders that are found, whole objects and lines.
+/// paint, hatching, iso-lines, strokes beyond the ends of lines, lines in the colours of surfaces, convex
+/// and concave creases of their own, and of layers the borders that are found, whole objects and lines.
 fn known_to_reference(style: ComicStyle) -> ComicStyle {
     let mut style = style
         .without::<Paint>()
@@ -310,6 +310,7 @@ fn known_to_reference(style: ComicStyle) -> ComicStyle {
         .without::<IsoLines>();
     if let Some(outlines) = style.get_mut::<Outlines>() {
         outlines.color = LineColor::Ink;
+        outlines.overshoot = 0.0;
         outlines.creases = outlines.creases.map(|creases| Creases {
             convex: None,
             concave: None,

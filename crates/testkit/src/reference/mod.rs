@@ -39,7 +39,6 @@ pub mod nested;
 pub mod noise;
 pub mod normal;
 pub mod octahedral;
-pub mod overshoot;
 pub mod paint;
 pub mod paper;
 pub mod ping_pong;
