@@ -34,7 +34,6 @@ pub mod histogram;
 pub mod light;
 pub mod link;
 pub mod map;
-pub mod misregistration;
 pub mod nested;
 pub mod noise;
 pub mod normal;
