@@ -229,6 +229,18 @@ fn assert_noticed_for_good(small: &mut Small, nudge: &Nudge, frames: u16) {
     assert_complete(small, &want, "at equal depth again");
 }
 
+/// Missing ids are counted in the viewport, wherever it is.
+#[test]
+fn lost_ids_of_a_viewport_are_noticed() {
+    let (mut small, _) = scene(Msaa::Off);
+    small.see_in([53, 31, 61, 47]);
+    small.settle();
+    assert_eq!(method(&small), None);
+    Nudge::new(&mut small).set(&mut small, NUDGES[0]);
+    wait_for_tolerance(&mut small, "in a viewport");
+    assert_eq!(small.errors(), 0);
+}
+
 /// Pixels that no tolerance gives an id (here: depth is off by a twentieth) are tried for a few
 /// frames, and then let be.
 #[test]
