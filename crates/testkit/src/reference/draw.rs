@@ -182,20 +182,6 @@ impl Cracks {
         linked
     }
 
-    /// Silhouettes with these cracks, row by row. `widest`: the largest half width.
-    pub fn from_cracks(cracks: Vec<[Option<Crack>; 2]>, width: i64, widest: f64) -> Self {
-        Self {
-            width,
-            height: cracks.len() as i64 / width,
-            cracks,
-            reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
-            opacity: [1.0; 3],
-            smooth: false,
-            hard: false,
-            by_columns: widest > 1.0,
-        }
-    }
-
     pub(super) fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
         let inside = (0..self.width).contains(&x) && (0..self.height).contains(&y);
         if inside {

@@ -28,7 +28,6 @@ pub mod footprint;
 pub mod fused;
 pub mod gaps;
 pub mod halftone;
-pub mod hatch;
 pub mod hatching;
 pub mod histogram;
 pub mod light;
