@@ -8,7 +8,6 @@ mod bound;
 mod color_harmony;
 mod color_styles;
 mod depth_map;
-mod find;
 mod fog;
 mod footprint;
 pub mod halftone;
