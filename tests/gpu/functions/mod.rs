@@ -21,7 +21,6 @@ mod nested;
 mod normal;
 mod overshoot;
 mod paint;
-mod pressure;
 mod proxy;
 mod ramp;
 mod ramp_map;

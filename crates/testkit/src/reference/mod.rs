@@ -41,7 +41,6 @@ pub mod paint;
 pub mod paper;
 pub mod ping_pong;
 pub mod planes;
-pub mod pressure;
 pub mod ramp_map;
 pub mod range;
 pub mod raw;
