@@ -548,10 +548,7 @@ fn a_mirrored_view_is_the_mirrored_picture() {
     small.insert((Projection::custom(mirrored), settings));
     small.settle();
     let found = small.settle().picture();
-    let pixels = found.pixels().zip(expected.pixels());
-    let is_other =
-        |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 2);
-    let others = pixels.filter(is_other).count();
+    let others = differ(&found, &expected, 2);
     // Silhouettes cover other pixels where a border passes through the centre of one.
     assert!(others < (size.x * size.y / 500) as usize, "{others}");
     assert_eq!(small.errors(), 0);

@@ -97,10 +97,7 @@ fn changes(small: &mut Small) -> f64 {
     for _ in 0..FRAMES {
         small.headless.step(1);
         let now = small.picture();
-        let differ = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
-            a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
-        };
-        count += before.pixels().zip(now.pixels()).filter(differ).count();
+        count += differ(&before, &now, 2);
         before = now;
     }
     count as f64 / (FRAMES * SIZE * SIZE) as f64

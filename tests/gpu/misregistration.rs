@@ -2,6 +2,7 @@
 
 use crate::{
     halftone::{assert_background_stays, assert_lines_stay, fill},
+    line_scenes::runs,
     prelude::*,
 };
 
@@ -139,11 +140,8 @@ fn plates_drift_from_page_to_page() {
     };
     let pages = |small: &mut Small, rate: f32| {
         let mut film = vec![small.shot(&strayed(rate))];
-        for _ in 0..30 {
-            small.headless.step(1);
-            film.push(small.picture());
-        }
-        film.chunk_by(|a, b| a == b).count()
+        film.extend(small.film(30));
+        runs(&film).len()
     };
     assert_eq!(pages(&mut small, 0.0), 1);
     // A new page in every fifth frame.

@@ -21,11 +21,7 @@ const APIS: [wgpu::Backends; 2] = [wgpu::Backends::VULKAN, wgpu::Backends::GL];
 
 /// The fraction of pixels that differ by more than two codes.
 fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
-    let far = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
-        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
-    };
-    let off = a.pixels().zip(b.pixels()).filter(far).count();
-    off as f64 / f64::from(a.width() * a.height())
+    crate::small::changed(a, b, 2)
 }
 
 /// Draws a scene with both APIs. `most`: the fraction of pixels that may be apart.

@@ -6,6 +6,7 @@ use image::imageops;
 
 use crate::{
     halftone::fill,
+    line_scenes::runs,
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -205,11 +206,8 @@ fn sheets_change_at_their_rate() {
     for (rate, sheets) in [(0.0, 1), (12.0, 7)] {
         small.insert(Paper { rate, ..default() }).settle();
         let mut film = vec![small.picture()];
-        for _ in 0..30 {
-            small.headless.step(1);
-            film.push(small.picture());
-        }
-        let found = film.chunk_by(|a, b| a == b).count();
+        film.extend(small.film(30));
+        let found = runs(&film).len();
         assert_eq!(found, sheets, "{rate}");
     }
 }

@@ -105,13 +105,6 @@ pub fn drawn(small: &mut Small) -> RgbaImage {
     picture
 }
 
-/// Pixels that differ by more than this many codes.
-pub fn differ(a: &RgbaImage, b: &RgbaImage, codes: u8) -> usize {
-    let pairs = a.pixels().zip(b.pixels());
-    let apart = pairs.filter(|(a, b)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > codes));
-    apart.count()
-}
-
 /// A ball and a box on a ground, under a sun and a lamp with shadows.
 pub fn stage(light: &ToonLight) -> Small {
     let mut small = room(UVec2::new(240, 160), 0.1);

@@ -8,8 +8,8 @@ use image::RgbaImage;
 use crate::{
     prelude::*,
     ramp::{
-        EDGE_SIZE, MODES, bright, check_borders, check_caps, check_edge, differ, drawn, leaning,
-        put, room, set_light, stage, sun, with,
+        EDGE_SIZE, MODES, bright, check_borders, check_caps, check_edge, drawn, leaning, put, room,
+        set_light, stage, sun, with,
     },
     styles::Folder,
     toon_shading::{load, mesh_with_shading, wait, watching},

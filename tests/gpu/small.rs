@@ -326,6 +326,20 @@ pub fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> u8 {
     pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
 }
 
+/// How many pixels of two pictures differ by more than some codes.
+pub fn differ(a: &image::RgbaImage, b: &image::RgbaImage, codes: u8) -> usize {
+    let is_far = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
+        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > codes)
+    };
+    a.pixels().zip(b.pixels()).filter(is_far).count()
+}
+
+/// The same as a fraction of the picture.
+pub fn changed(a: &image::RgbaImage, b: &image::RgbaImage, codes: u8) -> f64 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    differ(a, b, codes) as f64 / f64::from(a.width() * a.height())
+}
+
 /// Adds an effect to a style; `None` adds nothing.
 pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyle {
     match effect {

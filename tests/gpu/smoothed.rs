@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{bright, differ, drawn, put, room, set_light, sun, with},
+    ramp::{bright, drawn, put, room, set_light, sun, with},
 };
 
 const SIZE: UVec2 = UVec2::new(128, 128);

@@ -10,7 +10,7 @@ use crate::{
     hatched_material::{covers, light_from, plain, tone},
     line_scenes::mean,
     prelude::*,
-    ramp::{differ, put, room},
+    ramp::{put, room},
 };
 
 pub const SIZE: UVec2 = UVec2::new(240, 160);

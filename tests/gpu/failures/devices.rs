@@ -154,7 +154,7 @@ fn occlusion_culling_changes_nothing() {
     let check = |small: &mut Small| {
         let (picture, found) = shoot(small);
         assert!(found == ids, "other ids");
-        let off = changed(&before, &picture);
+        let off = changed(&before, &picture, 1);
         assert!(off == 0.0, "{off} differs");
         assert_eq!(small.errors(), 0);
     };
@@ -193,7 +193,7 @@ fn behind_a_wall(style: Option<&ComicStyle>) -> [image::RgbaImage; 2] {
 #[test]
 fn what_is_no_longer_hidden_is_styled_at_once() {
     let [first, later] = behind_a_wall(None);
-    let off = changed(&first, &later);
+    let off = changed(&first, &later, 1);
     assert_eq!(off, 0.0, "the engine draws it later: nothing is tested");
     // Without smoothing, the range is that of its own frame.
     let style = many_passes().with_depth_map(DepthMap {
@@ -201,7 +201,7 @@ fn what_is_no_longer_hidden_is_styled_at_once() {
         ..default()
     });
     let [first, later] = behind_a_wall(Some(&style));
-    let off = changed(&first, &later);
+    let off = changed(&first, &later, 1);
     assert_eq!(off, 0.0, "{off} of the picture is styled later");
 }
 
@@ -226,7 +226,7 @@ fn the_largest_target_is_styled() {
         small.style(&many_passes()).settle();
         assert_eq!(small.errors(), 0, "{size}");
         assert!(
-            changed(&plain, &small.picture()) > 0.1,
+            changed(&plain, &small.picture(), 1) > 0.1,
             "{size} is not styled"
         );
     }
@@ -262,6 +262,7 @@ fn objects_with_lightmaps_have_lines() {
     let lines = changed(
         &plain,
         &small.shot(&ComicStyle::new().with(Outlines::default())),
+        1,
     );
     assert!((0.005..0.2).contains(&lines), "{lines} of the picture");
     small.style(&many_passes()).settle();
@@ -300,5 +301,8 @@ fn a_device_without_compute_shaders_draws_a_style() {
         of_engine + 2 * each,
         "{each} are the engine's"
     );
-    assert!(changed(&plain, &small.picture()) > 0.1, "it is not styled");
+    assert!(
+        changed(&plain, &small.picture(), 1) > 0.1,
+        "it is not styled"
+    );
 }
