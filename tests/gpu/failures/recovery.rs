@@ -36,7 +36,7 @@ fn scene(size: UVec2, msaa: Msaa) -> (Small, [Entity; 2]) {
         .init_resource::<RenderErrors>()
         .insert_resource(RenderErrorHandler(|error, main, _| {
             println!("{}", error.description);
-            main.resource_mut::<RenderErrors>().0 += 1;
+            main.resource_mut::<RenderErrors>().count += 1;
             assert!(matches!(error.ty, ErrorType::Validation), "{error:?}");
             let settings = WgpuSettings {
                 backends: Some(HeadlessOptions::default().backends),
@@ -130,7 +130,6 @@ fn wait_for_sections(small: &mut Small, when: &str) {
 fn recover(small: &mut Small) {
     let starts = |small: &Small| small.render_world().resource::<Starts>().0;
     let before = starts(small);
-    assert_eq!(small.errors(), 0);
     let device = small.render_world().resource::<RenderDevice>();
     // A buffer must have a use.
     let _ = device.create_buffer(&wgpu::BufferDescriptor {
