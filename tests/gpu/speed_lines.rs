@@ -98,7 +98,7 @@ fn parallel_lines_are_as_many_and_as_wide_as_asked() {
         };
         let picture = drawn(&mut small, lines);
         for x in [0, SIZE.x - 1] {
-            let side = || (0..SIZE.y).map(|y| (x, y));
+            let side = || (0..SIZE.y).map(move |y| (x, y));
             count += crossed(&picture, side());
             ink += black_ink(&picture, side());
         }

@@ -76,6 +76,18 @@ pub fn has_any(texts: &[&'static str], names: &[&str]) -> bool {
     names.iter().any(|name| has(texts, name))
 }
 
+/// Adds a definition under a condition.
+pub fn push_if(is_set: bool, names: &mut Vec<&'static str>, name: &'static str) {
+    if is_set {
+        names.push(name);
+    }
+}
+
+/// Adds a definition where there is any of others.
+pub fn also(names: &mut Vec<&'static str>, others: &[&str], name: &'static str) {
+    push_if(has_any(names, others), names, name);
+}
+
 /// Those of these variants that set something, or a number, that none before them sets.
 pub fn fewest<V: AsRef<[Definition<'static>]>>(variants: Vec<V>) -> Vec<V> {
     let mut seen = BTreeSet::new();

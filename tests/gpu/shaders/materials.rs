@@ -6,7 +6,7 @@ use bevy_comics_testkit::wgsl::Library;
 
 use super::{
     Variant,
-    covering::{has, pairs},
+    covering::{also, has, pairs, push_if},
     shader,
 };
 use crate::{prelude::*, toon_shaders::ALWAYS};
@@ -67,18 +67,15 @@ fn in_prepass(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "AVAILABLE_STORAGE_BUFFER_BINDINGS=8",
     ];
     names.extend(PREPASS);
-    if has(&names, "NORMAL_PREPASS") {
-        names.push("NORMAL_PREPASS_OR_DEFERRED_PREPASS");
-    }
-    if has(&names, "MOTION_VECTOR_PREPASS") {
-        names.push("MOTION_VECTOR_PREPASS_OR_DEFERRED_PREPASS");
-    }
-    if has(&names, "NORMAL_PREPASS") || has(&names, "MOTION_VECTOR_PREPASS") {
-        names.push("PREPASS_FRAGMENT");
-    }
-    if has(&names, "ALPHA_CUTOFF") {
-        names.push("MAY_DISCARD");
-    }
+    let [normals, motion] = ["NORMAL_PREPASS", "MOTION_VECTOR_PREPASS"].map(|n| has(&names, n));
+    push_if(normals, &mut names, "NORMAL_PREPASS_OR_DEFERRED_PREPASS");
+    push_if(
+        motion,
+        &mut names,
+        "MOTION_VECTOR_PREPASS_OR_DEFERRED_PREPASS",
+    );
+    push_if(normals || motion, &mut names, "PREPASS_FRAGMENT");
+    also(&mut names, &["ALPHA_CUTOFF"], "MAY_DISCARD");
     names
 }
 
