@@ -96,7 +96,6 @@ fn assert_far_things_are_paler(views: &[Msaa], in_full: &[Msaa]) {
             assert!(apart <= 1, "{msaa:?}, {flip}: {found:?} of {plain:?}");
             assert!(spread(found[1]) <= 1, "{msaa:?}, {flip}: {found:?}");
         }
-        assert_eq!(small.errors(), 0);
         if !in_full.contains(&msaa) {
             continue;
         }
@@ -139,7 +138,6 @@ fn assert_far_things_are_paler(views: &[Msaa], in_full: &[Msaa]) {
                 "{levels} bands: {found:?}, {wanted:?}"
             );
         }
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -220,7 +218,6 @@ fn far_edges_must_be_stronger() {
             }
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Objects with an abstraction of their own have its colors, at every distance.
@@ -279,7 +276,6 @@ fn objects_have_colors_of_their_own_level() {
         set_style(&mut small, style(Granularity::Pixel));
         let found = seen(&mut small).map(spread);
         assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -325,7 +321,6 @@ fn lines_of_an_object_follow_its_center() {
     // Alone, the near card has a line before that, and the far one later.
     assert!(have_lines(some - 1, false)[0], "near, {some}");
     assert!(!have_lines(some, false)[1], "far, {some}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// Lightness as `color.wgsl` has it: the square root of the luminance.
@@ -399,5 +394,4 @@ fn tones_split_without_popping() {
     println!("a step changes up to {worst:?} of {changed}");
     assert!(worst.1 <= 1.0, "{worst:?}");
     assert!(changed > 0.1, "{changed}");
-    assert_eq!(small.errors(), 0);
 }

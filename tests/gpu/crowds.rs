@@ -264,6 +264,5 @@ fn assert_no_black_bar(size: UVec2, widths: &[f32]) {
             most
         });
         assert!(found[0] > 0.35, "{found:?}");
-        assert_eq!(small.errors(), 0);
     }
 }

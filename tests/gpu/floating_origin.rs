@@ -21,16 +21,6 @@ pub fn shift(world: &mut World, by: Vec3, tells: bool) {
     }
 }
 
-/// The fraction of the pixels that differ by more than 4 codes.
-fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
-    let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| {
-        let codes = a.0.iter().zip(b.0);
-        codes.map(|(a, b)| a.abs_diff(b)).max() > Some(4)
-    };
-    let pixels = a.pixels().zip(b.pixels());
-    pixels.filter(|(a, b)| apart(a, b)).count() as f64 / f64::from(a.width() * a.height())
-}
-
 /// Asserts that a style stays on surfaces while the origin moves, and does not if the crate is not told.
 fn assert_stays(small: &mut Small, style: ComicStyle) {
     small.style(&style);
@@ -45,12 +35,11 @@ fn assert_stays(small: &mut Small, style: ComicStyle) {
         }
         picture
     });
-    let [untold, told] = [untold, told].map(|picture| changed(&before, &picture));
+    let [untold, told] = [untold, told].map(|picture| changed(&before, &picture, 4));
     println!("{untold:.4} untold, {told:.5}");
     assert!(untold > 0.05, "{untold}: {style:?}");
     assert!(told <= 1e-3, "{told}: {style:?}");
     small.world().remove_resource::<WorldOrigin>();
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -124,5 +113,4 @@ fn assert_marks_are_on_planes(cases: &[(&str, f32)]) {
         println!("{:?}, {x}: {apart} pixels differ", s.marks);
         assert!(apart < found.len() / 50, "{s:?}, {x}: {apart}");
     }
-    assert_eq!(small.errors(), 0);
 }

@@ -228,5 +228,4 @@ fn assert_closed_gaps(cases: impl IntoIterator<Item = (u32, f32, LineWeight, f32
         let what = format!("gaps of {gap_closing}, {width} px");
         assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
-    assert_eq!(small.errors(), 0);
 }

@@ -21,21 +21,15 @@ fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
     FlipPool::from_image(&map).mean()
 }
 
-fn far_off(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f64 {
-    let off = reference
-        .pixels()
-        .zip(picture.pixels())
-        .filter(|(a, b)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 5))
-        .count();
-    off as f64 / f64::from(reference.width() * reference.height())
-}
-
 /// FLIP and the fraction of pixels that differ by more than 5 codes.
 fn apart(reference: &Path, picture: &image::RgbaImage) -> (f32, f64) {
     let reference = image::open(reference)
         .unwrap_or_else(|error| panic!("{}: {error}", reference.display()))
         .to_rgba8();
-    (flip_mean(&reference, picture), far_off(&reference, picture))
+    (
+        flip_mean(&reference, picture),
+        changed(&reference, picture, 5),
+    )
 }
 
 /// The fraction of pixels that may be far off.

@@ -86,7 +86,6 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         assert_ne!(picture, last, "step {} changes nothing", i + 1);
         last = picture;
     }
-    assert_eq!(small.errors(), 0);
     // The error that the page quotes is the one that is reported.
     let broken = blocks(&page, "text")
         .first()

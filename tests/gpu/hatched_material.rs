@@ -394,5 +394,4 @@ fn extreme_strokes_are_finite() {
             assert!(all.all(|c| c.is_finite()), "{x}, {anchor:?}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }

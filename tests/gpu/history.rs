@@ -80,7 +80,6 @@ fn only_tiles_that_had_lines_are_drawn() {
     });
     small.headless.step(1);
     assert_eq!(tiles(&mut small), 0.0, "another size");
-    assert_eq!(small.errors(), 0);
 }
 
 /// The sum of ink in the picture.
@@ -97,10 +96,7 @@ fn changes(small: &mut Small) -> f64 {
     for _ in 0..FRAMES {
         small.headless.step(1);
         let now = small.picture();
-        let differ = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
-            a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
-        };
-        count += before.pixels().zip(now.pixels()).filter(differ).count();
+        count += differ(&before, &now, 2);
         before = now;
     }
     count as f64 / (FRAMES * SIZE * SIZE) as f64
@@ -147,7 +143,6 @@ fn lines_of_a_still_view_stand_still() {
     assert!(few < 1e-4, "{few}");
     let is_still = still < 0.1 && still < 0.8 * trembling;
     assert!(is_still, "{still}, {trembling}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// Without a history, pixels change; with one, none does.
@@ -158,7 +153,6 @@ fn assert_stands_still(small: &mut Small, outlines: Outlines, least: f64) {
         changes(small)
     });
     assert!(found[0] > least && found[1] < 1e-4, "{found:?}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// A ledge of 0.4 pixels, whose creases are found at some of the engine's offsets only: its line
@@ -206,7 +200,6 @@ fn lines_of_surfaces_narrower_than_a_pixel_stand_still() {
     // Away from the line of the wall.
     let alone = removed(&small);
     assert_no_ghost(&before, &after, 100.0, |i| alone[i] == 0.0);
-    assert_eq!(small.errors(), 0);
 }
 
 /// Of the ink in pixels where no line is left there was `least`, and is less than a hundredth.
@@ -231,7 +224,6 @@ fn lines_that_are_covered_leave_no_ghosts() {
     small.headless.step(4);
     let ghost = total(&small);
     assert!(ghost < 1.0, "{ghost}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// A wall that is gone has no lines in the next frame, also where another line is drawn: on
@@ -260,7 +252,6 @@ fn lines_of_objects_that_vanish_leave_no_ghosts() {
         };
         !(-2..=2).any(|y| (-2..=2).any(|x| is_near(x, y)))
     });
-    assert_eq!(small.errors(), 0);
 }
 
 /// After a camera cut, nothing of the frame before is left.
@@ -278,7 +269,6 @@ fn a_cut_forgets_lines() {
     let apart = once.iter().zip(&later).map(|(a, b)| (a - b).abs());
     let found = apart.sum::<f32>();
     assert!(found < 0.5 * total(&small), "{found}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// Lines of an object that moves are where it is.
@@ -306,7 +296,6 @@ fn lines_follow_what_moves() {
             assert!((1.8..2.2).contains(&ink), "{what}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Lines are as dark while the camera moves: the history reads the last frame between its pixels,
@@ -349,7 +338,6 @@ fn assert_dark_while_moving(steps: &[Vec3]) {
         });
         assert!(with > 0.85 * without, "{step}: {with}, {without}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The standard deviation of values from the straight line of least squares through them.
@@ -395,7 +383,6 @@ fn a_slow_pan_keeps_lines_even() {
     for (without, with) in without.iter().zip(with) {
         assert!(with <= *without, "{with}, {without}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// All kinds of lines under the engine's anti-aliasing: the pass of object ids binds what the
@@ -409,5 +396,4 @@ fn object_edges_are_drawn_under_temporal_anti_aliasing() {
     small.headless.step(30);
     assert!(total(&small) > 400.0, "{}", total(&small));
     assert!(small.ran(ComicsStage::ObjectIds));
-    assert_eq!(small.errors(), 0);
 }

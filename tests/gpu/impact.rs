@@ -53,7 +53,6 @@ fn an_impact_is_two_drawings_and_then_nothing() {
     assert!(is_two_tone(&film[0]) && is_two_tone(&film[9]));
     assert_eq!(film[10], before);
     assert_eq!(counts(&small), counted(1, 0));
-    assert_eq!(small.errors(), 0);
 }
 
 /// The effects of the camera are replaced for the time of the impact, and come back.

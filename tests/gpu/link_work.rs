@@ -1,72 +1,9 @@
-//! What the passes that complete cracks load, counted in their shaders, and how often they
-//! run. A cell has 4 x 8 = 32 pixels, and a word of a plane 32 rows of a column.
+//! Which passes lines run.
 
 use bevy::render::render_resource::PipelineCache;
-use bevy_comics_testkit::{line_work::label, link_work, work::along_cracks};
+use bevy_comics_testkit::{line_work::label, work::along_cracks};
 
 use crate::prelude::*;
-
-const CELL: f64 = 32.0;
-/// Words that tell a pass of `link.wgsl` whether a cell has anything to continue: found
-/// cracks and lines, to the east and south, of its four columns.
-const LOOSE: f64 = 4.0 * 4.0;
-/// Words around a cell that has: the same four planes in 20 columns, and in two bands each,
-/// because the 32 rows of the window begin anywhere.
-const WINDOW: f64 = 20.0 * 4.0 * 2.0;
-/// Words of `settle.wgsl` for a cell: found cracks and lines, to the east and south, of its
-/// four columns.
-const SETTLE: f64 = 4.0 * 4.0;
-/// More loads with a budget of ink: the densities of 4 x 4 squares.
-const NEAR: f64 = 4.0 * 4.0;
-
-/// Edges between objects: each of their cracks is certain, so that none is left to continue a
-/// line, and none is left out.
-fn objects(hysteresis: f32, budget: f32) -> ComicStyle {
-    ComicStyle::new().with(Outlines {
-        silhouettes: None,
-        creases: None,
-        hysteresis,
-        min_length: 1,
-        smooth: false,
-        ink_budget: budget,
-        ..default()
-    })
-}
-
-/// A pass continues lines by eight cracks. Where there is nothing to continue, it loads no
-/// window.
-#[test]
-#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighborhood_and_each_crack_once` has one"]
-fn cells_without_weak_cracks_load_no_window() {
-    let work = link_work::count(&objects(20.0, 1.0));
-    assert!(work.cells > 20, "{work:?}");
-    let passes = 3.0;
-    assert_eq!(work.dispatches, 3 + 1, "{work:?}");
-    assert_eq!(work.link, passes * LOOSE / CELL, "{work:?}");
-    assert_eq!(work.settle, SETTLE / CELL, "{work:?}");
-}
-
-/// Without hysteresis there are no passes that link. With a budget, the cracks of every pixel
-/// that has any are loaded, to be weighed: of one pixel at least, and of all at most.
-#[test]
-fn a_budget_loads_its_neighborhood_and_each_crack_once() {
-    let work = link_work::count(&objects(0.0, 0.35));
-    assert_eq!(work.dispatches, 1, "{work:?}");
-    assert_eq!(work.link, 0.0, "{work:?}");
-    let cracks = work.settle - (SETTLE + NEAR) / CELL;
-    assert!(cracks > 0.0 && cracks <= 1.0, "{work:?}");
-}
-
-/// Default lines: one pass links, and loads windows in some cells, but not in all.
-#[test]
-#[ignore = "long: two apps with counting shaders; `a_budget_loads_its_neighborhood_and_each_crack_once` has one"]
-fn default_lines_load_some_windows() {
-    let work = link_work::count(&ComicStyle::new().with(Outlines::default()));
-    assert_eq!(work.dispatches, 1 + 1, "{work:?}");
-    let [least, most] = [LOOSE, LOOSE + WINDOW].map(|words| words / CELL);
-    assert!(work.link > least && work.link < most, "{work:?}");
-    assert!(work.settle > (SETTLE + NEAR) / CELL, "{work:?}");
-}
 
 /// The kinds of dispatches and draws of the lines in a style, by the names of their pipelines, and
 /// those of the styles before it in the same app. Each runs once in a frame, but for

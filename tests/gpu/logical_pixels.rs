@@ -68,7 +68,6 @@ fn lines_continue_by_logical_pixels() {
         // The weak part is longer than that.
         let whole = length(&mut small, lines(32.0, 0.0)) - certain;
         assert!(whole > 8 * scale as usize, "scale {scale}: {whole}");
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -110,6 +109,5 @@ fn lines_taper_over_logical_pixels() {
                 "scale {scale}, {crack} cracks from the end: {width}, {want}"
             );
         }
-        assert_eq!(small.errors(), 0);
     }
 }

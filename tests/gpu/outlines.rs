@@ -271,7 +271,6 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
                 "{width} px at {scale_factor}, {size}: {measured} physical pixels"
             );
         }
-        assert_eq!(small.errors(), 0);
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::{
     line_scenes::turned,
     outlines::{ink, put, removed},
-    pictures::{assert_pass_matches_the_reference, outlined},
     prelude::*,
     walls::{towards_the_sky, wall},
 };
@@ -216,44 +215,4 @@ fn strokes_are_not_longer_than_their_lines() {
         .map(|overshoot| -> f32 { ink(&mut small, lines(2.0, overshoot, 0.0)).iter().sum() });
     let gained = (long - short) / 2.0;
     assert!((2.0..8.5).contains(&gained), "{gained}");
-}
-
-#[test]
-fn strokes_match_the_reference() {
-    let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
-    for (width, overshoot, taper, amplitude) in [
-        (2.0, 5.0, 0.0, 0.0),
-        (1.0, 16.0, 0.0, 0.0),
-        (2.0, 7.5, 10.0, 0.0),
-        (5.0, 9.0, 24.0, 0.0),
-        (2.0, 8.0, 0.0, 2.0),
-    ] {
-        // Many edges that end.
-        let silhouettes = Silhouettes {
-            threshold: 0.3,
-            ..default()
-        };
-        let creases = Creases {
-            angle: 100.0,
-            ..default()
-        };
-        let boil = LineBoil {
-            amplitude,
-            rate: 0.0,
-            ..default()
-        };
-        let style = outlined(Outlines {
-            width,
-            overshoot,
-            weight: lines(width, overshoot, taper).weight,
-            objects: None,
-            silhouettes: Some(silhouettes),
-            creases: Some(creases),
-            boil,
-            ..default()
-        });
-        let what = format!("{width} px, {overshoot}, {taper}, boiling by {amplitude}");
-        assert_pass_matches_the_reference(&mut small, &style, None, &what);
-    }
-    assert_eq!(small.errors(), 0);
 }

@@ -183,5 +183,4 @@ fn an_effect_of_a_game_thins_lines() {
     assert!(whole[1] > 20.0, "{whole:?}");
     assert_eq!(left[0], whole[0]);
     assert!(left[1] < 0.2 * whole[1], "{left:?} of {whole:?}");
-    assert_eq!(small.errors(), 0);
 }

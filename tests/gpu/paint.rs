@@ -61,7 +61,6 @@ fn every_pixel_matches_the_reference() {
         };
         assert_matches_the_reference(&mut small, &colors, mixed, None);
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -73,7 +72,6 @@ fn a_viewport_is_a_picture_of_its_own() {
     for form in FORMS {
         assert_matches_the_reference(&mut small, &colors, paint(form), Some(viewport));
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Over a background that shows through, too. Where nothing is, nothing is painted; and paint
@@ -97,7 +95,6 @@ fn a_transparent_background_stays() {
         }
         assert!(empty > 300, "{empty} pixels show the background");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// A code of rounding: the picture between the passes has 11 bits.
@@ -117,11 +114,7 @@ fn one_color_stays() {
         for form in FORMS {
             let painted = small.shot(&ComicStyle::new().with(paint(form)));
             assert!(small.ran(ComicsStage::of::<Paint>()));
-            let pairs = plain.as_raw().iter().zip(painted.as_raw());
-            assert!(
-                pairs.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1),
-                "{form:?}"
-            );
+            assert!(apart(&plain, &painted) <= 1, "{form:?}");
         }
     }
 }
@@ -136,9 +129,8 @@ fn an_edge_stays_sharp() {
     small.put(Rectangle::new(90.0, 90.0), unlit(gray), at);
     let plain = small.shot(&ComicStyle::new());
     let painted = small.shot(&ComicStyle::new().with(paint(PaintKernel::Box)));
-    for (a, b) in plain.as_raw().iter().zip(painted.as_raw()) {
-        assert!(a.abs_diff(*b) <= 1, "a vertical edge between two pixels");
-    }
+    let most = apart(&plain, &painted);
+    assert!(most <= 1, "a vertical edge between two pixels: {most}");
     let style = ComicStyle::new().with(paint(PaintKernel::Anisotropic));
     let painted = small.shot(&style);
     for y in 0..40 {
@@ -203,7 +195,6 @@ fn prints_and_lines_come_after_the_paint() {
     assert_eq!(bare, covered(&mut small, &style));
     assert!(small.ran(ComicsStage::of::<Paint>()));
     assert!(small.ran(ComicsStage::of::<Halftone>()));
-    assert_eq!(small.errors(), 0);
 }
 
 /// Debug views show the same as without paint.
@@ -218,7 +209,6 @@ fn debug_views_are_those_of_one_pass() {
         let two = small.shot(&painted);
         assert_eq!(one, two, "{view:?}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Numbers out of range, and light beyond all displays: nothing that is no number.
@@ -247,5 +237,4 @@ fn extreme_values_are_finite() {
             assert!(finite, "{form:?}, {x}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }

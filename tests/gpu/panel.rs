@@ -263,9 +263,7 @@ fn search(window: &impl Session) {
     window.chord(&["ctrl"], "z");
     assert_eq!(width(window), before);
     window.key("Escape");
-    window.until("all effects", |state| {
-        state["widgets"]["contours"].is_array()
-    });
+    window.until_there("contours");
     // The clear button.
     window.click("search");
     window.type_text("jitter");
@@ -273,18 +271,14 @@ fn search(window: &impl Session) {
         state["widgets"]["contours"].is_null()
     });
     window.click("search.clear");
-    window.until("all effects", |state| {
-        state["widgets"]["contours"].is_array()
-    });
+    window.until_there("contours");
 }
 
 /// The style as Rust code is not a style file.
 fn copy_as_rust(window: &impl Session) {
     let before = width(window);
     window.click("copy_rust");
-    window.until("the message", |state| {
-        state["widgets"]["message"].is_array()
-    });
+    window.until_there("message");
     window.click("paste");
     assert_eq!(width(window), before);
 }
@@ -318,9 +312,7 @@ fn save_and_watch(window: &impl Session) {
 
     // Break the file: the last valid style stays, the panel shows the error.
     fs::write(&path, "(version: 3,\n    contours: (widht: 3.0))").expect("written");
-    window.until("the error", |state| {
-        state["widgets"]["files.error"].is_array()
-    });
+    window.until_there("files.error");
     assert_eq!(width(window), 1.25);
     assert!(changed(&thin, &picture(window)) < 50, "the picture stays");
     // Repair it.
@@ -361,12 +353,10 @@ fn compare_views(window: &impl Session) {
         map.pixels().all(|p| p[0] == p[1] && p[1] == p[2]),
         "the map is gray"
     );
-    window.until("the histogram", |state| {
-        state["widgets"]["histogram"].is_array()
-    });
+    window.until_there("histogram");
     window.click("view.none");
     window.click("tab.Cost");
-    window.until("the times", |state| state["widgets"]["times"].is_array());
+    window.until_there("times");
 }
 
 /// A screenshot, twice as large as the window.
@@ -379,9 +369,7 @@ fn photograph(window: &impl Session) {
 fn take_photo(window: &impl Session) -> RgbImage {
     window.click("tab.Photo");
     window.click("photo.take");
-    window.until("the photograph", |state| {
-        state["widgets"]["photo.saved"].is_array()
-    });
+    window.until_there("photo.saved");
     let photos: Vec<_> = fs::read_dir(window.folder().join("pictures"))
         .expect("a folder of pictures")
         .flatten()
@@ -460,9 +448,7 @@ fn tune_by_keys(window: &impl Session) {
     // Keys unfold the effect and move its slider.
     tab_to(window, "contours.open");
     window.key("space");
-    window.until("the settings", |state| {
-        state["widgets"]["contours.width"].is_array()
-    });
+    window.until_there("contours.width");
     tab_to(window, "contours.width");
     for _ in 0..3 {
         window.key("Right");
@@ -485,9 +471,7 @@ fn leaf_by_keys(window: &impl Session) {
     // Another page.
     tab_to(window, "tab.Views");
     window.key("space");
-    window.until("the views", |state| {
-        state["widgets"]["view.DepthMap"].is_array()
-    });
+    window.until_there("view.DepthMap");
     tab_to(window, "view.DepthMap");
     window.key("space");
     until_map(window);

@@ -236,7 +236,6 @@ fn assert_speck_is_left_out(mut small: Small, away: f32, bin: impl Fn(f32) -> f3
     small.cut();
     small.settle();
     assert_drawn_with_the_walls(&small, away, &bin);
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]

@@ -76,5 +76,5 @@ pub use bevy_comics_testkit::{
 };
 
 pub use crate::small::{
-    Object, Small, apart, black_ink, linear, options, size, unlit, with_option,
+    Object, Small, apart, black_ink, changed, differ, linear, options, size, unlit, with_option,
 };

@@ -4,7 +4,7 @@ use bevy_comics_testkit::reference::toon::reflected::{Lights, Surface, reflected
 
 use crate::{
     prelude::*,
-    ramp::{bright, differ, drawn, put, room, set_light, sun, with},
+    ramp::{bright, drawn, put, room, set_light, sun, with},
     ramp_pixels::arriving,
 };
 

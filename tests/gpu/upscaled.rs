@@ -208,7 +208,6 @@ fn assert_outlines(cases: impl IntoIterator<Item = (f32, f32)>) {
         assert_along_sides(&ink, (most, least), false, &what);
         assert_width(&ink, width, scale, &what);
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -248,7 +247,6 @@ fn assert_contours(cases: impl IntoIterator<Item = (f32, ContourOperator)>) {
         assert_along_sides(&ink, (most, least), true, &what);
         assert_width(&ink, width, scale, &what);
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -309,7 +307,6 @@ fn lines_do_not_depend_on_the_place_of_the_viewport() {
             assert!((got - wanted).abs() < 0.01, "{at}: {got}, not {wanted}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The row of the horizon, in pixels from the top, at a column.
@@ -357,7 +354,6 @@ fn a_grazing_plane_has_lines_at_its_horizon_alone() {
             assert!(lined, "{name}, scale {scale}: no horizon");
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 /// The paper's contours include slopes, and its outlines compare 5 x 5 neighbors, between which a
@@ -448,7 +444,6 @@ fn an_even_slope_is_as_steep_at_every_resolution() {
             assert_eq!(wrong.count(), 0, "scale {scale}, threshold {threshold}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -510,7 +505,6 @@ fn assert_page(scales: &[f32]) {
             assert_eq!(small.shot(&style), whole, "{scale}: {style:?}");
         }
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]

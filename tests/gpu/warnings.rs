@@ -65,6 +65,7 @@ fn draw_all() {
         ..options(size())
     };
     let mut small = Small::alone(options, Msaa::Off);
+    small.count_errors();
     let target = small.headless.render_target();
     let first = small.camera;
     small.insert((Outlines::default(), LensDistortion::default()));

@@ -2,7 +2,6 @@
 //! that renders without a window, a bare GPU device, the shipped WGSL, and the
 //! shaders' references in double precision.
 
-pub mod asked;
 pub mod before;
 pub mod bench;
 pub mod demo;
@@ -13,7 +12,6 @@ pub mod forest;
 pub mod fuzz;
 pub mod headless;
 pub mod line_work;
-pub mod link_work;
 pub mod orbit;
 pub mod page_work;
 pub mod painting;

@@ -4,8 +4,8 @@
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
 //! returns its count instead of its result, and the passes after it hand the count on to
-//! the picture. Lists of tiles, the choice of samples and the faithful equations are not counted,
-//! nor are writes. Those that complete cracks are counted in [`link_work`](crate::link_work).
+//! the picture. Lists of tiles, the choice of samples, the faithful equations and the passes that
+//! complete cracks are not counted, nor are writes.
 
 use bevy::{
     prelude::*,
@@ -38,25 +38,22 @@ pub struct LineWork {
     pub bytes: f64,
 }
 
-pub(crate) const CELLS: &str = "bevy_comics/lines/find/cells.wgsl";
+const CELLS: &str = "bevy_comics/lines/find/cells.wgsl";
 const COLUMNS: &str = "bevy_comics/lines/draw/columns.wgsl";
 const DRAW: &str = "bevy_comics/lines/draw/draw.wgsl";
-pub(crate) const LINK: &str = "bevy_comics/lines/link/link.wgsl";
 const READ: &str = "bevy_comics/lines/draw/read.wgsl";
-pub(crate) const READ_PLANES: &str = "bevy_comics/lines/cracks/read_planes.wgsl";
-pub(crate) const SETTLE: &str = "bevy_comics/lines/link/settle.wgsl";
+const SETTLE: &str = "bevy_comics/lines/link/settle.wgsl";
 /// The files of the counted passes, and of the functions that they read textures with.
-const FILES: [&str; 12] = [
+const FILES: [&str; 11] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
-    READ_PLANES,
+    "bevy_comics/lines/cracks/read_planes.wgsl",
     "bevy_comics/lines/cracks/stored.wgsl",
     COLUMNS,
     DRAW,
     READ,
     CELLS,
-    LINK,
     SETTLE,
     "bevy_comics/objects/objects.wgsl",
 ];
@@ -125,7 +122,7 @@ const ENDS: [End; 4] = [
 ];
 
 /// The text of a file while the pass in `counted` is counted.
-pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
+fn edited(counted: &str, path: &str, text: &str) -> String {
     if path == READ {
         return text.replace(
             "// Ink at a position",
@@ -167,9 +164,10 @@ pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
     }
 }
 
-/// The teapot, with these edits of the shaders.
-pub(crate) fn edited_teapot(edit: impl Fn(&str, &str) -> String) -> Studio {
+/// The teapot, while the pass of a file is counted.
+fn counting_teapot(counted: &str) -> Studio {
     let mut studio = teapot();
+    let edit = |path: &str, text: &str| edited(counted, path, text);
     let files = edit_shaders(studio.headless.app.world_mut(), &FILES, edit);
     assert_eq!(files, FILES, "the files of the passes");
     studio
@@ -182,7 +180,7 @@ pub(crate) fn draw(studio: &mut Studio, style: &ComicStyle) {
 }
 
 /// The number that the passes have handed on for every pixel.
-pub(crate) fn numbers(studio: &Studio) -> Vec<u32> {
+fn numbers(studio: &Studio) -> Vec<u32> {
     let world = studio.headless.app.world();
     let view = world.get::<RenderEntity>(studio.camera);
     let view = view.expect("extracted").id();
@@ -226,7 +224,7 @@ fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f
             work::renew_camera(studio);
             studio
         }
-        None => studio.insert(edited_teapot(|path, text| edited(file, path, text))),
+        None => studio.insert(counting_teapot(file)),
     };
     draw(studio, style);
     let counted = numbers(studio);

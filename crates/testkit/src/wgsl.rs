@@ -84,19 +84,6 @@ fn without_bindings(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// The text of a fragment shader with its entry point as a plain function, which others can call.
-pub fn without_stage(text: &str) -> String {
-    let attributes = [
-        "@fragment",
-        "@builtin(position) ",
-        "@location(0) ",
-        "@location(1) ",
-    ];
-    (attributes.iter()).fold(text.to_owned(), |text, attribute| {
-        text.replace(*attribute, "")
-    })
-}
-
 /// The values of definitions by name.
 type Values = HashMap<String, ShaderDefValue>;
 

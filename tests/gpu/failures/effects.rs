@@ -151,7 +151,6 @@ fn passes_through<E: Effect>() {
     small.settle();
     assert!(small.ran(ComicsStage::of::<Colorization>()));
     assert_ne!(small.picture(), bare);
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]

@@ -33,19 +33,6 @@ fn styled(msaa: Msaa) -> Small {
     small
 }
 
-/// Fraction of the pixels that differ by more than one display code.
-fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
-    assert_eq!(a.dimensions(), b.dimensions());
-    let differs = |(p, q): (&image::Rgba<u8>, &image::Rgba<u8>)| {
-        p.0.iter().zip(q.0).any(|(a, b)| a.abs_diff(b) > 1)
-    };
-    a.pixels()
-        .zip(b.pixels())
-        .filter(|pair| differs(*pair))
-        .count() as f64
-        / f64::from(a.width() * a.height())
-}
-
 /// Has the engine divide lights among clusters on the CPU.
 fn cluster_on_cpu(small: &mut Small) {
     let mut clusters = small.world().resource_mut::<GlobalClusterSettings>();

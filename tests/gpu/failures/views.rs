@@ -14,8 +14,7 @@ fn a_multisampled_camera_is_styled() {
     let mut small = styled(Msaa::Sample4);
     assert!(small.ran(ComicsStage::Stylize) && small.ran(ComicsStage::DepthRange));
     let with = small.picture();
-    assert!(changed(&with, &small.shot(&ComicStyle::default())) > 0.3);
-    assert_eq!(small.errors(), 0);
+    assert!(changed(&with, &small.shot(&ComicStyle::default()), 1) > 0.3);
 }
 
 #[test]
@@ -24,11 +23,10 @@ fn hdr_can_be_toggled_and_a_target_may_store_linear_color() {
     let ldr = small.picture();
     small.insert(Hdr).settle();
     // Without tonemapping the two cameras show the same colors.
-    assert!(changed(&ldr, &small.picture()) < 0.01);
+    assert!(changed(&ldr, &small.picture(), 1) < 0.01);
     let camera = small.camera;
     small.world().entity_mut(camera).remove::<Hdr>();
     assert_eq!(ldr, small.settle().picture());
-    assert_eq!(small.errors(), 0);
 
     let linear_target = HeadlessOptions {
         format: TextureFormat::Rgba8Unorm,
@@ -37,7 +35,6 @@ fn hdr_can_be_toggled_and_a_target_may_store_linear_color() {
     let mut small = Small::with(linear_target, Msaa::Off);
     small.style(&full_style()).settle();
     assert!(small.ran(ComicsStage::Stylize));
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
@@ -79,7 +76,6 @@ fn two_cameras_on_one_target(small: &mut Small, msaa: Msaa) {
     assert!(diagnostics.ran(small.camera, ComicsStage::of::<Contours>()));
     assert!(diagnostics.ran(second, ComicsStage::of::<Desaturation>()));
     assert!(!diagnostics.ran(small.camera, ComicsStage::of::<Desaturation>()));
-    assert_eq!(small.errors(), 0);
     // The first camera draws its half as it does alone.
     let both = small.picture();
     small.world().despawn(second);
@@ -115,13 +111,13 @@ fn a_target_may_have_another_size_in_every_frame() {
             (size.x, size.y)
         );
     }
-    assert_eq!(small.errors(), 0);
 }
 
 #[test]
 fn an_empty_viewport_adds_no_render_error() {
     let run = |style: bool| {
         let mut small = Small::alone(options(size()), Msaa::Off);
+        small.count_errors();
         // The engine's own errors would be counted: one for every frame, and a new app draws some
         // twice.
         cluster_on_cpu(&mut small);
@@ -152,10 +148,9 @@ fn a_deferred_camera_looks_like_a_forward_one() {
     small.style(&full_style()).settle();
     assert!(small.ran(ComicsStage::Stylize));
     assert!(
-        changed(&forward, &small.picture()) < 0.05,
+        changed(&forward, &small.picture(), 1) < 0.05,
         "deferred looks different"
     );
-    assert_eq!(small.errors(), 0);
 }
 
 /// Checks these numbers of samples, with and without HDR.
@@ -171,7 +166,7 @@ fn check_post_processes(cases: &[(Msaa, bool)]) {
         let plain = small.settle().picture();
         small.insert(Fxaa::default()).settle();
         let fxaa = small.picture();
-        assert!(changed(&plain, &fxaa) < 0.5, "FXAA lost the picture");
+        assert!(changed(&plain, &fxaa, 1) < 0.5, "FXAA lost the picture");
         small.camera_mut().remove::<Fxaa>();
         let sharpening = ContrastAdaptiveSharpening {
             enabled: true,
@@ -188,7 +183,6 @@ fn check_post_processes(cases: &[(Msaa, bool)]) {
             [0, 0, 0, 0],
             "the picture was lost"
         );
-        assert_eq!(small.errors(), 0, "{msaa:?}, hdr {hdr}");
     }
 }
 
@@ -242,5 +236,4 @@ fn cameras_that_cannot_be_styled_are_left_alone() {
     for (name, camera) in [("flat", flat), ("blind", blind)] {
         assert!(!diagnostics.ran(camera, ComicsStage::Stylize), "{name}");
     }
-    assert_eq!(small.errors(), 0);
 }

@@ -1,19 +1,13 @@
 //! Compares the crate's WGSL functions with their references, on random inputs and on
 //! edge cases.
 
-mod accumulate;
-mod ambient;
 mod art_map;
 mod bend;
 mod blocks;
 mod bound;
-mod budget;
 mod color_harmony;
 mod color_styles;
-mod count;
-mod depth_layers;
 mod depth_map;
-mod find;
 mod fog;
 mod footprint;
 pub mod halftone;
@@ -27,8 +21,6 @@ mod nested;
 mod normal;
 mod overshoot;
 mod paint;
-mod planes;
-mod pressure;
 mod proxy;
 mod ramp;
 mod ramp_map;
@@ -37,7 +29,6 @@ mod ribbon;
 mod shadow_texels;
 mod sheet;
 mod similarity;
-mod speed_lines;
 mod stroke_level;
 mod stylized_highlight;
 mod surface;

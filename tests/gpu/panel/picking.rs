@@ -187,9 +187,7 @@ fn save(window: &impl Session) {
     window.type_text("glaze");
     window.frames(2);
     window.click("shading.save");
-    window.until("the file", |state| {
-        state["widgets"]["shading.saved"].is_array()
-    });
+    window.until_there("shading.saved");
     let path = window.folder().join("shadings").join("glaze.toon.ron");
     let text = fs::read_to_string(path).expect("saved");
     let saved = ToonShading::from_ron(&text).expect("it reads");

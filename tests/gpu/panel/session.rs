@@ -21,6 +21,11 @@ pub trait Session {
     /// Waits for a state and returns it.
     fn until(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value;
 
+    /// Waits until a widget is there.
+    fn until_there(&self, widget: &str) -> Value {
+        self.until(widget, |state| state["widgets"][widget].is_array())
+    }
+
     /// Waits for this number of frames.
     fn frames(&self, count: u64);
 
@@ -56,10 +61,10 @@ pub trait Session {
     /// A position in a widget in physical pixels: at a fraction of its width, in the
     /// middle of its height. Waits until the widget does not move.
     fn place(&self, widget: &str, fraction: f64) -> [f64; 2] {
-        let mut state = self.until(widget, |state| state["widgets"][widget].is_array());
+        let mut state = self.until_there(widget);
         loop {
             self.seen();
-            let now = self.until(widget, |state| state["widgets"][widget].is_array());
+            let now = self.until_there(widget);
             let rests = now["widgets"][widget] == state["widgets"][widget];
             state = now;
             if rests && state["cameras"][0]["compiling"] == false {

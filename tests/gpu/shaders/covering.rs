@@ -26,20 +26,22 @@ pub fn definitions(texts: &[&'static str]) -> Definitions {
     texts.iter().copied().map(definition).collect()
 }
 
-/// A list of choices from a line, in which `|` divides choices of several words or none.
-fn list(line: &'static str) -> &'static [Choice] {
+/// Lists of choices, each from a text in which `|` divides choices of several words or none.
+pub fn parsed(lists: &[&'static str]) -> Vec<&'static [Choice]> {
     let words =
         |choice: &'static str| -> Choice { choice.split_whitespace().collect::<Vec<_>>().leak() };
-    line.split('|').map(words).collect::<Vec<_>>().leak()
+    let list = |text: &&'static str| -> &'static [Choice] {
+        text.split('|').map(words).collect::<Vec<_>>().leak()
+    };
+    lists.iter().map(list).collect()
 }
 
-/// The rows of lists, each written as [`list`] reads it, that have every pair.
+/// The rows of lists, each written as [`parsed`] reads it, that have every pair.
 pub fn rows(
     lists: &[&'static str],
     resolved: fn(Vec<&'static str>) -> Vec<&'static str>,
 ) -> Vec<Definitions> {
-    let lists: Vec<&[Choice]> = lists.iter().map(|line| list(line)).collect();
-    let found = covering(&lists, resolved).rows;
+    let found = covering(&parsed(lists), resolved).rows;
     found.iter().map(|row| definitions(row)).collect()
 }
 
@@ -72,6 +74,18 @@ pub fn has(texts: &[&'static str], name: &str) -> bool {
 /// Whether one of these texts is among `names`.
 pub fn has_any(texts: &[&'static str], names: &[&str]) -> bool {
     names.iter().any(|name| has(texts, name))
+}
+
+/// Adds a definition under a condition.
+pub fn push_if(is_set: bool, names: &mut Vec<&'static str>, name: &'static str) {
+    if is_set {
+        names.push(name);
+    }
+}
+
+/// Adds a definition where there is any of others.
+pub fn also(names: &mut Vec<&'static str>, others: &[&str], name: &'static str) {
+    push_if(has_any(names, others), names, name);
 }
 
 /// Those of these variants that set something, or a number, that none before them sets.

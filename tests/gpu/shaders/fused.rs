@@ -43,19 +43,6 @@ fn check(variants: &[Definitions]) {
     }
 }
 
-/// Everything that the tests of this file and of `parts` compose, but for texts that are read
-/// again.
-pub fn variants() -> Vec<Definitions> {
-    [
-        modes(),
-        vec![read()],
-        combinations(),
-        debug_views(),
-        parts::variants(),
-    ]
-    .concat()
-}
-
 /// Every storage of the picture and every projection, sampling and range of depth.
 fn views() -> Vec<Definitions> {
     let stored = [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]].map(flags);

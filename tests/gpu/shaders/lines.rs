@@ -2,13 +2,8 @@
 
 use super::{
     Variant, check,
-    covering::{each, has, has_any, pairs},
+    covering::{also, each, has, has_any, pairs, push_if},
 };
-
-/// Everything that the tests of this file compose.
-pub fn variants() -> Vec<Variant> {
-    [finding(), walking(), completing(), settling(), drawing()].concat()
-}
 
 /// What lines are along: the kinds of a view, and last those of highlighted objects.
 const KINDS: &str = "
@@ -47,9 +42,7 @@ fn finding() -> Vec<Variant> {
         found(names)
     }
     fn completed(mut names: Vec<&'static str>) -> Vec<&'static str> {
-        if has_any(&names, &["LEDGES", "HIGHLIGHTS"]) {
-            names.push("COMPLETED");
-        }
+        also(&mut names, &["LEDGES", "HIGHLIGHTS"], "COMPLETED");
         found(names)
     }
     [
@@ -68,19 +61,11 @@ fn found(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "VISIBLE_RANGE" => reads_map && !highlights,
         _ => true,
     });
-    if highlights {
-        names.push("OBJECT_STYLES");
-    }
+    push_if(highlights, &mut names, "OBJECT_STYLES");
     let ids = ["OBJECT_EDGES", "OBJECT_STYLES", "SECTIONS", "OBJECT_DEPTHS"];
-    if has_any(&names, &ids) {
-        names.push("OBJECT_IDS");
-    }
-    if has(&names, "CREASES") {
-        names.push("NORMALS");
-    }
-    if has_any(&names, &["SILHOUETTES", "CREASES"]) {
-        names.push("EXCESS");
-    }
+    also(&mut names, &ids, "OBJECT_IDS");
+    also(&mut names, &["CREASES"], "NORMALS");
+    also(&mut names, &["SILHOUETTES", "CREASES"], "EXCESS");
     names.push("DEPTH");
     names
 }
@@ -115,15 +100,9 @@ fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
     } else if !jumps {
         names.extend(["JUMPS", "MAP_FLAGS=0"]);
     }
-    if has_any(&names, &["SILHOUETTES", "LEDGES"]) {
-        names.push("EXCESS");
-    }
-    if has(&names, "CREASES") {
-        names.push("NORMALS");
-    }
-    if has_any(&names, &["OBJECT_EDGES", "SECTIONS"]) {
-        names.push("OBJECT_IDS");
-    }
+    also(&mut names, &["SILHOUETTES", "LEDGES"], "EXCESS");
+    also(&mut names, &["CREASES"], "NORMALS");
+    also(&mut names, &["OBJECT_EDGES", "SECTIONS"], "OBJECT_IDS");
     names.extend(["DEPTH", "BOUNDS"]);
     names
 }
@@ -204,18 +183,10 @@ fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
     ];
     let around = ["FOG", "DISTANCE_FADE"];
     let weight = surface || reads_map || has_any(&names, &along) || has_any(&names, &around);
-    if surface {
-        names.push("SURFACE_WEIGHT");
-    }
-    if has_any(&names, &["LIGHT_WEIGHT", "LIT_EDGES"]) {
-        names.push("NORMALS");
-    }
-    if has(&names, "OBJECT_DEPTHS") {
-        names.push("OBJECT_IDS");
-    }
-    if weight {
-        names.push("WEIGHT");
-    }
+    push_if(surface, &mut names, "SURFACE_WEIGHT");
+    also(&mut names, &["LIGHT_WEIGHT", "LIT_EDGES"], "NORMALS");
+    also(&mut names, &["OBJECT_DEPTHS"], "OBJECT_IDS");
+    push_if(weight, &mut names, "WEIGHT");
     if weight || has_any(&names, &["FOLDS", "RIMS"]) {
         names.extend(["DEPTH", "EDITS"]);
     } else {
@@ -268,9 +239,7 @@ fn drawing() -> Vec<Variant> {
 }
 
 fn with_ids(mut names: Vec<&'static str>) -> Vec<&'static str> {
-    if has(&names, "OBJECT_STYLES") {
-        names.push("OBJECT_IDS");
-    }
+    also(&mut names, &["OBJECT_STYLES"], "OBJECT_IDS");
     names
 }
 
@@ -286,9 +255,7 @@ fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "BRIDGED" => owners && blocks,
         _ => true,
     });
-    if owners {
-        names.push("OWNERS");
-    }
+    push_if(owners, &mut names, "OWNERS");
     with_ids(names)
 }
 

@@ -6,7 +6,7 @@ use bevy_comics_testkit::wgsl::Library;
 
 use super::{
     Variant,
-    covering::{has, pairs},
+    covering::{also, has, pairs, push_if},
     shader,
 };
 use crate::{prelude::*, toon_shaders::ALWAYS};
@@ -17,11 +17,6 @@ pub fn library() -> Library {
     small.headless.step(2);
     let shaders = small.world().resource::<Assets<Shader>>();
     Library::new(shaders.iter().map(|(_, shader)| shader))
-}
-
-/// Everything that the tests of this file compose.
-pub fn variants() -> Vec<Variant> {
-    [ink(), transparent()].concat()
 }
 
 const PROJECTIONS: &str = "VIEW_PROJECTION_PERSPECTIVE | VIEW_PROJECTION_ORTHOGRAPHIC
@@ -72,25 +67,22 @@ fn in_prepass(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "AVAILABLE_STORAGE_BUFFER_BINDINGS=8",
     ];
     names.extend(PREPASS);
-    if has(&names, "NORMAL_PREPASS") {
-        names.push("NORMAL_PREPASS_OR_DEFERRED_PREPASS");
-    }
-    if has(&names, "MOTION_VECTOR_PREPASS") {
-        names.push("MOTION_VECTOR_PREPASS_OR_DEFERRED_PREPASS");
-    }
-    if has(&names, "NORMAL_PREPASS") || has(&names, "MOTION_VECTOR_PREPASS") {
-        names.push("PREPASS_FRAGMENT");
-    }
-    if has(&names, "ALPHA_CUTOFF") {
-        names.push("MAY_DISCARD");
-    }
+    let [normals, motion] = ["NORMAL_PREPASS", "MOTION_VECTOR_PREPASS"].map(|n| has(&names, n));
+    push_if(normals, &mut names, "NORMAL_PREPASS_OR_DEFERRED_PREPASS");
+    push_if(
+        motion,
+        &mut names,
+        "MOTION_VECTOR_PREPASS_OR_DEFERRED_PREPASS",
+    );
+    push_if(normals || motion, &mut names, "PREPASS_FRAGMENT");
+    also(&mut names, &["ALPHA_CUTOFF"], "MAY_DISCARD");
     names
 }
 
 #[test]
 fn every_shader_among_the_engines_composes_and_validates() {
     let mut library = library();
-    for (file, definitions) in variants() {
+    for (file, definitions) in [ink(), transparent()].concat() {
         let source = shader(file);
         // Only native devices have arrays of bindings.
         let composed = if definitions.contains(&("BINDLESS", None)) {

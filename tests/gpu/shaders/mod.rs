@@ -2,7 +2,6 @@
 //! many of them, every pair of what selects them. `scripts/translate` translates what the tests of
 //! this folder and of `toon_shaders` compose, and nothing else.
 
-mod complete;
 pub mod covering;
 mod effects;
 mod fused;

@@ -3,7 +3,7 @@
 
 use super::{
     Definitions,
-    covering::{fewest, has, rows},
+    covering::{fewest, has, push_if, rows},
     effects::{self, Modes, flag},
     flags,
     fused::of_pass,
@@ -115,9 +115,7 @@ fn overlay(mut names: Vec<&'static str>) -> Vec<&'static str> {
     if contours {
         names.extend(["MAP", "DEPTH"]);
     }
-    if focus {
-        names.push("EFFECT_FOCUS_STYLE=4");
-    }
+    push_if(focus, &mut names, "EFFECT_FOCUS_STYLE=4");
     // Of these effects, the focus alone is one that changes colors.
     if ids && focus {
         names.extend(["UNSTYLED", "UNSTYLED_COLORS"]);
@@ -186,15 +184,9 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "MULTISAMPLED" => !contours,
         _ => true,
     });
-    if lines {
-        names.push("LINES");
-    }
-    if sketch {
-        names.push("LINES_ANYWHERE");
-    }
-    if outlines {
-        names.push("WITHOUT_EFFECT_OUTLINES");
-    }
+    push_if(lines, &mut names, "LINES");
+    push_if(sketch, &mut names, "LINES_ANYWHERE");
+    push_if(outlines, &mut names, "WITHOUT_EFFECT_OUTLINES");
     if contours {
         names.extend(["WITHOUT_EFFECT_CONTOURS", "MAP", "DEPTH", "SAME_SIZE"]);
         names.push("EFFECT_CONTOURS_OPERATOR=1");

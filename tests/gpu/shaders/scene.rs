@@ -6,11 +6,6 @@ use super::{
     subsets,
 };
 
-/// Everything that the tests of this file compose.
-pub fn variants() -> Vec<Variant> {
-    [depths(), objects()].concat()
-}
-
 /// A file with every subset of flags, beside others that are always set.
 fn with_subsets(
     file: &'static str,

@@ -1,4 +1,5 @@
-//! Reference of `lines/draw/draw.wgsl`: the ink of the lines at every pixel.
+//! Reference of `lines/draw/draw.wgsl`: the ink of the lines at every pixel, without strokes beyond
+//! loose ends.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,7 +15,6 @@ use super::{
     fold::placed,
     gaps::{gaps, source},
     link::{Place, bend, joined, linked, without_short_pieces},
-    overshoot::{Stroke, strokes},
     rim::is_rim,
     sheet::{Sheet, Spot},
     straight::straight,
@@ -42,9 +42,6 @@ pub struct Cracks {
     hard: bool,
     /// Whether only the best cracks of each column are searched.
     by_columns: bool,
-    /// Beyond loose ends, and over how many cracks they taper.
-    strokes: Vec<Stroke>,
-    taper: f64,
 }
 
 impl Cracks {
@@ -79,8 +76,6 @@ impl Cracks {
             .map(f64::from),
             reach: grid_reach + i64::from(s.smooth && grid_reach > 1),
             by_columns: grid_reach > 1 && reach > 1,
-            strokes: vec![],
-            taper: (f64::from(s.weight.taper) * scale).min(64.0),
         };
         let steps = ((f64::from(s.hysteresis) * scale).ceil() as i32).min(64);
         let all: HashMap<Place, Crack> = found.places().collect();
@@ -93,30 +88,21 @@ impl Cracks {
             least => (f64::from(least) * scale).ceil().min(64.0) as u32,
         };
         let linked = found.complete((&all, &sources), (steps, min_length, s), (view, jump(s)));
-        let longest = if s.smooth {
-            (f64::from(s.overshoot) * scale).min(64.0)
-        } else {
-            0.0
-        };
-        found.weigh((s, view), [x0, y0], longest, (&linked, &sources));
-        if longest > 0.0 {
-            let at = |(pixel, side): Place| found.at(pixel[0], pixel[1])[side];
-            found.strokes = strokes(&linked, &at, [w, h], longest);
-        }
+        let taper = (f64::from(s.weight.taper) * scale).min(64.0);
+        found.weigh((s, view), [x0, y0], taper, (&linked, &sources));
         found
     }
 
-    /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends are
-    /// extended; `linked`: the cracks of all lines, short pieces included; `all`: those that were found.
+    /// Multiplies the width of every crack by its weight. `taper`: the cracks over which loose ends
+    /// taper; `linked`: the cracks of all lines, short pieces included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),
         [x0, y0]: [i64; 2],
-        stroke: f64,
+        taper: f64,
         (linked, all): (&HashSet<Place>, &HashMap<Place, Crack>),
     ) {
         let [width, height] = [self.width, self.height];
-        let taper = self.taper;
         let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
         let w = &s.weight;
         let densities = (s.ink_budget < 1.0).then(|| Densities::new(linked, [width, height]));
@@ -135,10 +121,8 @@ impl Cracks {
                 let at = [x0 + x, y0 + y];
                 let mut factor = local_weight(s, view, &crack, at, side);
                 if taper > 0.0 {
-                    let most = taper.max(stroke);
-                    let ends = cracks_to_ends(&lines, (pixel, side), [width, height], most);
-                    let stroke = stroke.min((ends[0] + ends[1] + 1) as f64);
-                    factor *= taper_weight(taper, ends[0].min(ends[1]) as f64 + stroke);
+                    let ends = cracks_to_ends(&lines, (pixel, side), [width, height], taper);
+                    factor *= taper_weight(taper, ends[0].min(ends[1]) as f64);
                 }
                 if let Some(densities) = &densities {
                     let width = 2.0 * crack.half_width * factor;
@@ -196,22 +180,6 @@ impl Cracks {
             }
         }
         linked
-    }
-
-    /// Silhouettes with these cracks, row by row. `widest`: the largest half width.
-    pub fn from_cracks(cracks: Vec<[Option<Crack>; 2]>, width: i64, widest: f64) -> Self {
-        Self {
-            width,
-            height: cracks.len() as i64 / width,
-            cracks,
-            reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
-            opacity: [1.0; 3],
-            smooth: false,
-            hard: false,
-            by_columns: widest > 1.0,
-            strokes: vec![],
-            taper: 0.0,
-        }
     }
 
     pub(super) fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
@@ -402,9 +370,6 @@ impl Ink {
                 let on = sheet.under([x0 as f64 + at[0], y0 as f64 + at[1]]);
                 let at = boiled(&boil, at, scale, seconds);
                 let mut ink = cracks.ink_at(at, &on, nudge);
-                for stroke in &cracks.strokes {
-                    ink = larger(ink, stroke.ink((at, &on), cracks.taper, nudge));
-                }
                 ink[0] = ink[0].max(whole[0]);
                 ink[1] = ink[1].max(whole[1]);
                 ink.map(|ink| decoded(stored(encoded(ink), nudge)))

@@ -154,8 +154,3 @@ pub fn line_offset(half_width: f64) -> f64 {
     }
     0.5 * (width.rem_euclid(2.0)).min(2.0 - width.rem_euclid(2.0))
 }
-
-/// Whether a raw depth is that of a surface in front of another one.
-pub fn is_in_front(d: f64, other: f64, jump: f64) -> bool {
-    d - other > jump
-}

@@ -7,7 +7,7 @@ use super::{
     Rgb, Rgba, black_flats, color, color_harmony, colorization, contours, depth_layers,
     desaturation,
     draw::Ink,
-    halftone, misregistration, mix, paper, read,
+    halftone, mix, paper, read,
     sheet::Sheet,
     sketch, tone_bands, tone_ramp,
     view::{View, map_slope, pixel_depth},
@@ -15,7 +15,7 @@ use super::{
 };
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers, Desaturation,
-    Halftone, Misregistration, Outlines, Paper, Sketch, ToneBands, ToneRamp, Vignette,
+    Halftone, Outlines, Paper, Sketch, ToneBands, ToneRamp, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -142,7 +142,7 @@ fn between(viewport: [u32; 4], load: &dyn Fn([u32; 2]) -> Rgba, at: [f64; 2]) ->
     std::array::from_fn(|i| mix(above[i], below[i], fy))
 }
 
-/// A pixel after the plates and screens.
+/// A pixel after the screens.
 fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f64) -> Colored {
     let mut pixel = colored(style, view, input, at, nudge);
     // Between passes, the picture is stored in 11 bits.
@@ -155,20 +155,9 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
         let [r, g, b, alpha] = colored(style, view, input, at, nudge).picture;
         with([r, g, b].map(|c| c * stored), alpha)
     };
-    let moved = |at: [u32; 2]| -> Rgba {
-        let Some(s) = style.get::<Misregistration>() else {
-            return load(at);
-        };
-        let read = |at| between(view.viewport, &load, at);
-        let rgb = misregistration::misregistration(s, &read, at.map(|v| f64::from(v) + 0.5), 1.0);
-        with(rgb, load(at)[3])
-    };
-    if style.get::<Misregistration>().is_some() {
-        pixel.picture = moved(at);
-    }
     if let Some(s) = style.get::<Halftone>() {
         let viewport = UVec4::from_array(view.viewport);
-        let read = |at| between(view.viewport, &moved, at);
+        let read = |at| between(view.viewport, &load, at);
         let cells = halftone::Cells {
             center: halftone::center(s, viewport, UVec2::from_array(input.size)),
             sheet: (style.get::<Paper>()).map_or(Sheet::SMOOTH, |s| Sheet::new(s, 1.0, 0)),

@@ -31,23 +31,3 @@ pub fn rect_light(half_right: Vec3, half_up: Vec3, at: Vec3, cells: usize) -> Ve
     }
     sum
 }
-
-/// The point of the rectangle that a mirror at a place shows along a direction: where its ray meets
-/// the plane, moved to the nearest point inside along both axes. A ray that leaves the plane, or
-/// runs along it, shows the border that it points to.
-pub fn mirrored(half_right: Vec3, half_up: Vec3, at: Vec3, direction: Vec3) -> Vec3 {
-    let normal = [
-        half_right[1] * half_up[2] - half_right[2] * half_up[1],
-        half_right[2] * half_up[0] - half_right[0] * half_up[2],
-        half_right[0] * half_up[1] - half_right[1] * half_up[0],
-    ];
-    let (height, speed) = (dot(at, normal), dot(direction, normal));
-    let time = -height / speed;
-    let hit: Vec3 = match time > 0.0 && time.is_finite() {
-        true => std::array::from_fn(|k| at[k] + time * direction[k]),
-        false => direction.map(|x| 1e6 * x),
-    };
-    let along = |half: Vec3| (dot(hit, half) / dot(half, half)).clamp(-1.0, 1.0);
-    let (x, y) = (along(half_right), along(half_up));
-    std::array::from_fn(|k| x * half_right[k] + y * half_up[k])
-}

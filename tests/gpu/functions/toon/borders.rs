@@ -1,6 +1,6 @@
 //! Borders of the shadows of two lights in one pixel, under a ramp over the fraction of all light.
 
-use bevy_comics_testkit::{device::gpu, reference::toon::ambient::brightness};
+use bevy_comics_testkit::{device::gpu, reference::color::luminance};
 
 use super::Numbers;
 use crate::prelude::*;
@@ -62,7 +62,7 @@ fn with_lit(row: &Row, lit: [f64; 2]) -> Row {
 fn brightest(row: &Row) -> f64 {
     let color = |c: usize| f64::from(row[c] + row[7 + c]) / std::f64::consts::PI + 0.02;
     let all = [0, 1, 2].map(color);
-    let strength = brightness(all).powf(f64::from(row[17]) - 1.0);
+    let strength = luminance(all).powf(f64::from(row[17]) - 1.0);
     strength * all.into_iter().fold(0.0, f64::max)
 }
 

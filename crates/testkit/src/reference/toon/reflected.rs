@@ -10,7 +10,10 @@ use bevy_comics::{
     toon::{DetailAxis, Ramp, RampBlend, RampMode},
 };
 
-use super::{super::detail, super::light::edge_at, ambient::brightness, tones::Tones};
+use super::{
+    super::{color::luminance, detail, light::edge_at},
+    tones::Tones,
+};
 
 /// A surface in a pixel.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +55,7 @@ pub fn reflected(light: &ToonLight, s: &Surface, lights: &Lights) -> DVec3 {
 }
 
 fn bright(color: DVec3) -> f64 {
-    brightness(color.to_array())
+    luminance(color.to_array())
 }
 
 /// Cosine between the normal and a light, and its change over a pixel.
