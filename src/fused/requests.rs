@@ -260,10 +260,10 @@ fn object_depths(
     let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
     wanted.then(|| ObjectDepthRequest {
         eye: ObjectEye {
-            place: context.eye,
+            position: context.eye,
             orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
             forward: *extracted.world_from_view.forward(),
-            forgets: 0,
+            resets: 0,
             axis: context.depth_axis,
             spare: Vec2::ZERO,
             view: uniform,

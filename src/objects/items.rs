@@ -250,6 +250,7 @@ impl IdItems<'_> {
             widths,
             vertex_widths: wanted && has_colors,
             tolerant: self.test.tolerant(),
+            highlighted: false,
         }
     }
 

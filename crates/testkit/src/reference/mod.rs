@@ -1,7 +1,6 @@
 //! References of the shaders in double precision. A reference has the name of the WGSL file
 //! that it mirrors. It is written from the definition, not from the shader.
 
-pub mod accumulate;
 pub mod bend;
 pub mod black_flats;
 pub mod blue_noise;
