@@ -22,18 +22,12 @@ mod textures;
 mod tiles;
 
 use bevy::{
-    app::App,
-    asset::{AssetServer, embedded_asset},
+    asset::embedded_asset,
     core_pipeline::{
         FullscreenShader,
         schedule::{Core3d, Core3dSystems},
     },
-    ecs::{
-        entity::Entity,
-        query::With,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res},
-    },
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup,
         render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},

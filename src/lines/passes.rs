@@ -1,10 +1,8 @@
 //! The pipelines of the lines of a view.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        system::{Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         render_resource::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,

@@ -1,16 +1,14 @@
 //! The pipelines that find lines and draw their ink.
 
 use bevy::{
-    app::App,
-    asset::{AssetServer, Handle, embedded_asset, load_embedded_asset},
+    asset::{embedded_asset, load_embedded_asset},
     core_pipeline::FullscreenShader,
-    ecs::resource::Resource,
+    prelude::*,
     render::render_resource::{
         BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
         ComputePipelineDescriptor, FragmentState, PrimitiveTopology, RenderPipelineDescriptor,
         SpecializedComputePipeline, SpecializedRenderPipeline, TextureFormat, VertexState,
     },
-    shader::Shader,
 };
 
 use crate::{gpu::definitions, samples};

@@ -3,14 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
-    log::warn_once,
-    math::{UVec4, Vec4Swizzles},
+    prelude::*,
     render::{
         render_resource::{TextureUsages, UniformBuffer},
         renderer::{RenderDevice, RenderQueue},

@@ -1,15 +1,6 @@
 //! Objects that screens of a halftone follow.
 
-use bevy::{
-    ecs::{
-        component::Component,
-        query::{Changed, Or, With},
-        reflect::ReflectComponent,
-    },
-    math::{Vec3, Vec4},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::GlobalTransform,
-};
+use bevy::prelude::*;
 
 use super::{inherit::Heritage, table::ObjectStyleUniform};
 

@@ -1,28 +1,15 @@
 //! Meshes that are seen, but are no part of the scene: skies.
 
 use bevy::{
-    app::{App, PostUpdate},
     camera::primitives::Aabb,
     core_pipeline::prepass::{AlphaMask3dPrepass, DeferredPrepass, Opaque3dPrepass},
-    ecs::{
-        change_detection::DetectChangesMut,
-        component::Component,
-        entity::Entity,
-        query::With,
-        reflect::ReflectComponent,
-        system::{Query, Res, ResMut},
-    },
-    log::warn_once,
     material::OpaqueRendererMethod,
-    math::{Mat4, Vec3},
-    mesh::Mesh3d,
     pbr::{PreparedMaterial, RenderMaterialInstances},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
     render::{
         erased_render_asset::ErasedRenderAssets, render_phase::ViewBinnedRenderPhases,
         sync_world::MainEntity,
     },
-    transform::components::GlobalTransform,
 };
 
 use super::inherit::{Inherited, Values, register};

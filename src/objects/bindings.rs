@@ -8,12 +8,7 @@
 
 use bevy::{
     core_pipeline::{core_3d::CORE_3D_DEPTH_FORMAT, prepass::ViewPrepassTextures},
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
+    prelude::*,
     render::{
         render_resource::{BindGroup, IntoBinding, TextureUsages, UniformBuffer},
         renderer::RenderQueue,

@@ -2,20 +2,12 @@
 //! has changed that the engine's own list of changes does not have.
 
 use bevy::{
-    app::SubApp,
-    ecs::{
-        component::Mutable,
-        entity::Entity,
-        lifecycle::RemovedComponents,
-        query::{Changed, Or},
-        resource::Resource,
-        schedule::{IntoScheduleConfigs, SystemSet},
-        system::{Query, Res, ResMut},
-    },
+    ecs::component::Mutable,
     mesh::skinning::SkinnedMesh,
     pbr::Lightmap,
+    prelude::*,
     render::{
-        Extract, ExtractSchedule,
+        Extract,
         batching::NoAutomaticBatching,
         sync_world::{MainEntity, MainEntityHashSet},
     },

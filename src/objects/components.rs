@@ -1,15 +1,6 @@
 //! Components that change or remove the outlines of single mesh entities.
 
-use bevy::{
-    color::Color,
-    ecs::{
-        change_detection::DetectChanges,
-        component::Component,
-        reflect::ReflectComponent,
-        system::{Res, ResMut},
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 
 use super::{
     anchors::{Anchored, anchored_style},

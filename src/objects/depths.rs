@@ -3,23 +3,13 @@
 use std::num::NonZero;
 
 use bevy::{
-    app::SubApp,
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     camera::primitives::Aabb,
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap, EntityHashSet},
-        lifecycle::RemovedComponents,
-        query::{Changed, Or, With, Without},
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::{Mat3, Vec2, Vec3},
-    mesh::Mesh3d,
+    ecs::entity::{EntityHashMap, EntityHashSet},
+    prelude::*,
     render::{
-        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
+        Extract, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, BufferBinding,
             BufferUsages, CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache,
@@ -32,8 +22,6 @@ use bevy::{
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         sync_world::MainEntityHashSet,
     },
-    shader::Shader,
-    transform::components::GlobalTransform,
 };
 
 use super::{
@@ -466,7 +454,6 @@ pub(super) fn build(render_app: &mut SubApp) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::{math::Quat, transform::components::Transform};
 
     #[test]
     fn bounds_hold_the_corners_of_the_mesh() {

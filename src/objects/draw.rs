@@ -2,8 +2,7 @@
 
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
-    ecs::{system::Res, world::World},
-    log::error_once,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{LoadOp, RenderPassDescriptor, StoreOp},

@@ -4,22 +4,7 @@
 //! Observers note which entities changed. Without changes, a frame costs nothing.
 
 use bevy::{
-    asset::AssetPath,
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashSet},
-        hierarchy::{ChildOf, Children},
-        lifecycle::{Discard, Insert, Remove},
-        observer::On,
-        query::Has,
-        reflect::ReflectComponent,
-        resource::Resource,
-        system::{Query, ResMut},
-    },
-    mesh::Mesh3d,
-    platform::collections::HashMap,
-    prelude::{App, DetectChangesMut},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    asset::AssetPath, ecs::entity::EntityHashSet, platform::collections::HashMap, prelude::*,
     render::sync_world::MainEntityHashSet,
 };
 
@@ -125,7 +110,7 @@ pub(crate) fn build(app: &mut App) {
             },
         )
         .add_observer(parent_left)
-        .add_systems(bevy::app::PostUpdate, update_object_groups);
+        .add_systems(PostUpdate, update_object_groups);
 }
 
 fn parent_left(
@@ -226,7 +211,7 @@ impl Update<'_, '_, '_> {
             }
             let nothing = (None, None, None, false, false);
             let (child_of, children, mesh, ..) = self.tree.get(entity).unwrap_or(nothing);
-            let is_primitive = mesh.is_some_and(|m| m.path().and_then(primitive).is_some())
+            let is_primitive = mesh.is_some_and(|m| m.0.path().and_then(primitive).is_some())
                 || self.groups.primitives.get(entity).is_some();
             let parent = child_of.filter(|_| mesh.is_some()).map(ChildOf::parent);
             let root = root.filter(|_| mesh.is_some());
@@ -237,7 +222,7 @@ impl Update<'_, '_, '_> {
                 }
                 None => self.changed |= self.groups.primitives.set(entity, None),
             }
-            let children = children.into_iter().flat_map(|c| c.iter().copied());
+            let children = children.into_iter().flatten().copied();
             below.extend(children.filter(|child| !self.is_root(*child)));
         }
     }
@@ -256,9 +241,9 @@ impl Update<'_, '_, '_> {
         let mut copies: HashMap<&AssetPath, usize> = HashMap::default();
         let mut objects: HashMap<(AssetPath, &str, usize), Vec<Entity>> = HashMap::default();
         let mut others = Vec::new();
-        for child in children.iter().copied() {
+        for child in children.iter() {
             let mesh = self.tree.get(child).ok().and_then(|(_, _, mesh, ..)| mesh);
-            let path = mesh.and_then(|mesh| mesh.path());
+            let path = mesh.and_then(|mesh| mesh.0.path());
             let found = path.and_then(|path| Some((path, primitive(path)?)));
             let apart = split || self.is_split(child) || self.groups.roots.get(child).is_some();
             let Some((path, mesh)) = found.filter(|_| !apart) else {

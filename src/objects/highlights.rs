@@ -1,16 +1,7 @@
 //! Components that outline single objects in every view: selected ones, and the hidden parts
 //! of others.
 
-use bevy::{
-    app::{App, PostUpdate},
-    color::{Color, Srgba},
-    ecs::{
-        component::Component, entity::Entity, reflect::ReflectComponent, resource::Resource,
-        schedule::IntoScheduleConfigs, system::ResMut,
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
-    render::sync_world::MainEntityHashSet,
-};
+use bevy::{prelude::*, render::sync_world::MainEntityHashSet};
 
 use super::{
     changes::Follow,

@@ -7,14 +7,10 @@
 
 use bevy::{
     core_pipeline::prepass::{MotionVectorPrepass, NormalPrepass},
-    ecs::{
-        entity::Entity,
-        query::{Has, Or, With, Without},
-        system::{Commands, Query, Res, ResMut, SystemParam},
-    },
-    mesh::Mesh3d,
+    ecs::system::SystemParam,
     pbr::MeshPipelineKey,
     platform::{collections::HashSet, time::Instant},
+    prelude::*,
     render::{
         camera::DirtySpecializations,
         render_resource::TextureUsages,
@@ -22,8 +18,7 @@ use bevy::{
         sync_world::{MainEntity, MainEntityHashSet},
         texture::TextureCache,
         view::{
-            ExtractedView, Msaa, RenderVisibleEntities, RenderVisibleEntitiesClass,
-            RetainedViewEntity,
+            ExtractedView, RenderVisibleEntities, RenderVisibleEntitiesClass, RetainedViewEntity,
         },
     },
 };

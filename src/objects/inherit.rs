@@ -6,18 +6,12 @@
 use std::marker::PhantomData;
 
 use bevy::{
-    app::App,
     ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap, EntityHashSet},
-        hierarchy::{ChildOf, Children},
-        lifecycle::{Insert, Remove},
-        message::{Message, MessageReader, MessageWriter},
-        observer::On,
-        query::{AnyOf, Changed, Or, QueryFilter, ROQueryItem, ReadOnlyQueryData},
-        resource::Resource,
-        system::{Local, Query, SystemParam},
+        entity::{EntityHashMap, EntityHashSet},
+        query::{QueryFilter, ROQueryItem, ReadOnlyQueryData},
+        system::SystemParam,
     },
+    prelude::*,
     reflect::GetTypeRegistration,
     render::sync_world::MainEntityHashSet,
 };
@@ -233,12 +227,6 @@ impl<C: Component, V: Clone + PartialEq + Send + Sync + 'static> Follow for Valu
 
 #[cfg(test)]
 mod tests {
-    use bevy::{
-        app::PostUpdate,
-        ecs::{system::ResMut, world::World},
-        reflect::Reflect,
-    };
-
     use super::*;
 
     #[derive(Component, Reflect)]

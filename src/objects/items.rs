@@ -2,25 +2,22 @@
 
 use bevy::{
     asset::UntypedAssetId,
-    ecs::{
-        entity::Entity,
-        system::{
-            Res, ResMut, SystemParam, SystemParamItem,
-            lifetimeless::{Read, SRes},
-        },
+    ecs::system::{
+        SystemParam, SystemParamItem,
+        lifetimeless::{Read, SRes},
     },
-    log::{error_once, warn_once},
     material::{
         MaterialProperties,
         key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
     },
-    mesh::{BaseMeshPipelineKey, Mesh},
+    mesh::BaseMeshPipelineKey,
     pbr::{
         DrawMesh, MaterialVertexShader, MeshPipelineKey, PreparedMaterial, PrepassVertexShader,
         RenderMaterialInstances, RenderMeshInstances, RenderMeshQueueData, SetMaterialBindGroup,
         SetMeshBindGroup, SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup, SkinUniforms,
     },
     platform::sync::Arc,
+    prelude::*,
     render::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,

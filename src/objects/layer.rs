@@ -2,13 +2,7 @@
 
 use bevy::{
     core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::{With, Without},
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::UVec2,
+    prelude::*,
     render::{
         render_resource::{TextureFormat, TextureUsages},
         renderer::RenderDevice,

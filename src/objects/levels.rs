@@ -7,22 +7,11 @@
 use std::ops::Range;
 
 use bevy::{
-    app::App,
-    camera::visibility::{ViewVisibility, VisibilityRange},
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashMap},
-        hierarchy::ChildOf,
-        lifecycle::RemovedComponents,
-        query::{Added, Changed, Or, With},
-        resource::Resource,
-        system::{Query, ResMut},
-    },
-    math::Vec3,
-    mesh::Mesh3d,
+    camera::visibility::VisibilityRange,
+    ecs::entity::EntityHashMap,
     platform::collections::{HashMap, HashSet},
+    prelude::*,
     render::sync_world::MainEntityHashSet,
-    transform::components::{GlobalTransform, Transform},
 };
 
 use super::{changes::Follow, shared::Shared, table::ObjectStyles};

@@ -1,13 +1,9 @@
 //! Which meshes have lightmaps: the engine binds those of other layouts.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::With,
-        resource::Resource,
-        system::{Query, Res, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
     pbr::{Lightmap, RenderMeshInstances},
+    prelude::*,
     render::{
         Extract,
         sync_world::{MainEntity, MainEntityHashSet},

@@ -1,10 +1,8 @@
 //! Meshes whose vertices say how wide lines are, and the views whose widths of lines are drawn.
 
 use bevy::{
-    color::LinearRgba,
-    ecs::{component::Component, reflect::ReflectComponent, resource::Resource, system::ResMut},
     platform::collections::HashSet,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
     render::{
         render_resource::{LoadOp, RenderPassColorAttachment},
         view::RetainedViewEntity,
@@ -17,8 +15,7 @@ use super::{
 };
 use crate::gpu;
 
-/// The alpha of this mesh's vertex colors
-/// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
+/// The alpha of this mesh's vertex colors ([`Mesh::ATTRIBUTE_COLOR`]) is the width of its lines:
 /// 0 is no line, 0.5 the width that lines have otherwise, 1 twice that width.
 ///
 /// In between, the width changes gradually; over the surface, it is interpolated as vertex colors
@@ -35,9 +32,6 @@ use crate::gpu;
 ///
 /// While some mesh has it, object ids and a texture of one byte per pixel (and sample) are
 /// drawn for every camera with outlines.
-///
-/// [`AlphaMode::Opaque`]: bevy::prelude::AlphaMode::Opaque
-/// [`AlphaMode::Mask`]: bevy::prelude::AlphaMode::Mask
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct LineWidths {

@@ -99,14 +99,7 @@ pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::{
-        component::Component,
-        entity::Entity,
-        schedule::IntoScheduleConfigs,
-        system::{Res, ResMut},
-    },
-    math::UVec2,
+    prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp,
         render_resource::{
@@ -198,7 +191,7 @@ fn update_object_styles(
 }
 
 /// The table of the lines of highlighted objects on the GPU.
-#[derive(bevy::ecs::resource::Resource, Default)]
+#[derive(Resource, Default)]
 pub(crate) struct HighlightStyleBuffer(pub ObjectStyleBuffer);
 
 #[cfg(feature = "objects")]
@@ -222,7 +215,7 @@ impl Plugin for ObjectsPlugin {
             app.init_resource::<line_widths::WideMeshes>()
                 .init_resource::<simplification::Simplifications>()
                 .add_systems(
-                    bevy::app::PostUpdate,
+                    PostUpdate,
                     (
                         levels::find_levels,
                         components::assign_object_styles,
@@ -230,7 +223,7 @@ impl Plugin for ObjectsPlugin {
                         simplification::assign_simplifications,
                     )
                         .chain()
-                        .after(bevy::transform::TransformSystems::Propagate),
+                        .after(TransformSystems::Propagate),
                 );
             inherit::build(app);
             backdrop::build(app);

@@ -1,8 +1,7 @@
 //! What effects ask for that treat objects as a whole, and the table that answers it.
 
 use bevy::{
-    ecs::component::Component,
-    math::{Vec2, Vec3},
+    prelude::*,
     render::render_resource::{
         BindGroupLayoutEntry, Buffer, ShaderStages, ShaderType,
         binding_types::storage_buffer_read_only_sized,

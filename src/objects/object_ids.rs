@@ -2,15 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        resource::Resource,
-        system::ResMut,
-    },
-    log::warn_once,
-    platform::collections::HashMap,
-};
+use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*};
 
 /// The ids of objects in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535. A resource of the
 /// render world.

@@ -5,11 +5,9 @@
 use std::{collections::BTreeMap, ops::Range, time::Duration};
 
 use bevy::{
-    asset::AssetId,
-    ecs::{entity::Entity, resource::Resource, world::World},
-    mesh::Mesh,
     pbr::MeshPipelineKey,
     platform::collections::{HashMap, HashSet},
+    prelude::*,
     render::{
         render_phase::{
             CachedRenderPipelinePhaseItem, DrawError, DrawFunctionId, DrawFunctions, PhaseItem,

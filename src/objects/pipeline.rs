@@ -1,19 +1,14 @@
 //! The pipelines that draw the ids of objects.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    ecs::{
-        resource::Resource,
-        system::{Commands, Res},
-    },
-    material::{AlphaMode, MaterialProperties, key::ErasedMaterialPipelineKey},
-    math::UVec4,
+    asset::load_embedded_asset,
+    material::{MaterialProperties, key::ErasedMaterialPipelineKey},
     mesh::MeshVertexBufferLayoutRef,
     pbr::{
         PrepassFragmentShader, PrepassPipeline, PrepassPipelineSpecializer, PrepassVertexShader,
     },
     platform::sync::Arc,
-    prelude::Deref,
+    prelude::*,
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, DownlevelFlags,
@@ -23,7 +18,7 @@ use bevy::{
         },
         renderer::RenderAdapter,
     },
-    shader::{Shader, ShaderDefVal},
+    shader::ShaderDefVal,
 };
 
 use super::{ID_FORMAT, Pressure, WIDTH_FORMAT};

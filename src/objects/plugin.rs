@@ -1,17 +1,11 @@
 //! Adds the passes that draw object ids.
 
 use bevy::{
-    app::{App, SubApp},
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::{
-        entity::Entity,
-        query::{Or, With},
-        schedule::IntoScheduleConfigs,
-        system::{Commands, Query},
-    },
     pbr::queue_prepass_material_meshes,
+    prelude::*,
     render::{
-        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_phase::{AddRenderCommand, DrawFunctions},
         render_resource::SpecializedMeshPipelines,
     },

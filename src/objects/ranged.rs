@@ -8,20 +8,14 @@ use bevy::{
         primitives::Aabb,
         visibility::{NoCpuCulling, VisibilityRange},
     },
-    ecs::{
-        entity::Entity,
-        query::{Has, With},
-        resource::Resource,
-        system::{Query, Res, ResMut, SystemParam},
-    },
-    math::Vec3A,
+    ecs::system::SystemParam,
+    prelude::*,
     render::{
         Extract,
         batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
         sync_world::{MainEntity, MainEntityHashSet},
         view::{ExtractedView, NoIndirectDrawing},
     },
-    transform::components::GlobalTransform,
 };
 
 /// The meshes with ranges that only the GPU tests: their ranges and where they are.

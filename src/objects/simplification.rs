@@ -1,10 +1,6 @@
 //! Objects that are simpler or more detailed than their distance makes them.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent, system::ResMut},
-    math::Vec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 
 use super::inherit::{Inherited, Values};
 use crate::settings::{FieldRange, impl_sanitized};

@@ -1,13 +1,9 @@
 //! The table of outline styles that shaders read, and the slot of each object in it.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        resource::Resource,
-    },
-    log::warn_once,
-    math::{Vec3, Vec4},
+    ecs::entity::EntityHashMap,
     platform::collections::HashMap,
+    prelude::*,
     render::{
         render_resource::{Buffer, ShaderType, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},

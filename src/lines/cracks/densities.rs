@@ -1,7 +1,7 @@
 //! Where it is stored how densely the lines of a view lie.
 
 use bevy::{
-    math::{UVec2, UVec4, Vec4Swizzles},
+    prelude::*,
     render::{
         render_resource::{BindGroupEntry, Buffer, BufferUsages},
         renderer::RenderDevice,

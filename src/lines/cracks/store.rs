@@ -1,8 +1,7 @@
 //! Where the cracks of a view are stored.
 
 use bevy::{
-    ecs::component::Component,
-    math::UVec4,
+    prelude::*,
     render::{
         render_resource::{BindGroupEntry, Buffer, BufferUsages, CommandEncoder, IntoBinding},
         renderer::RenderDevice,

@@ -1,10 +1,6 @@
 //! Lines of near, middle and far.
 
-use bevy::{
-    color::LinearRgba,
-    math::{Vec2, Vec3, Vec4},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 
 /// Lines have another width, opacity and color in near, middle and far.
 #[derive(Clone, Copy, Debug, PartialEq)]

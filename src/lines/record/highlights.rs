@@ -1,15 +1,9 @@
 //! Draws the lines of highlighted objects over the picture: see `highlights.wgsl`.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
-    camera::CompositingSpace,
+    asset::load_embedded_asset,
     core_pipeline::FullscreenShader,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        resource::Resource,
-        system::{Query, Res},
-    },
+    prelude::*,
     render::{
         render_resource::{
             BindGroupEntry, BindGroupLayoutDescriptor, BlendState, CachedRenderPipelineId,
@@ -21,7 +15,7 @@ use bevy::{
         renderer::{RenderContext, ViewQuery},
         view::ViewTarget,
     },
-    shader::{Shader, ShaderDefVal},
+    shader::ShaderDefVal,
 };
 
 use crate::{

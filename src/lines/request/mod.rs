@@ -1,10 +1,6 @@
 //! What a view requests of the lines, and the uniform that its passes read.
 
-use bevy::{
-    ecs::{component::Component, entity::Entity},
-    math::{IVec2, IVec4, UVec2, UVec4, Vec2, Vec4},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 
 use crate::{
     depth::view::ViewUniform,

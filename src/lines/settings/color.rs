@@ -1,6 +1,6 @@
 //! Where the color of lines comes from.
 
-use bevy::reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, NotFinite, impl_sanitized};

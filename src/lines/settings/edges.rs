@@ -1,11 +1,6 @@
 //! How convex and concave creases are drawn.
 
-use bevy::{
-    color::Color,
-    math::Vec3,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{

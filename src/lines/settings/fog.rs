@@ -1,11 +1,6 @@
 //! How lines fade into the engine's distance fog.
 
-use bevy::{
-    ecs::world::EntityRef,
-    math::{Mat4, Vec2, Vec3, Vec4},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -62,7 +57,7 @@ const EXPONENTIAL: u32 = 1;
 /// Whether a camera has the engine's distance fog.
 pub(crate) fn has_fog(camera: EntityRef) -> bool {
     #[cfg(any(feature = "objects", feature = "toon"))]
-    return camera.contains::<bevy::pbr::DistanceFog>();
+    return camera.contains::<DistanceFog>();
     #[cfg(not(any(feature = "objects", feature = "toon")))]
     {
         let _ = camera;
@@ -118,8 +113,6 @@ pub(crate) struct FogUniform {
 
 #[cfg(test)]
 mod tests {
-    use bevy::math::Vec3Swizzles;
-
     use super::*;
 
     /// Positions on both sides of the middle, near and far, under projections of every kind:

@@ -1,9 +1,6 @@
 //! The settings of the three kinds of outline: silhouettes, creases, object edges.
 
-use bevy::{
-    color::Color,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::edges::EdgeStyle;

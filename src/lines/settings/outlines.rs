@@ -1,9 +1,6 @@
 //! The settings of lines: which lines are found, and their ink.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -219,7 +216,7 @@ impl Outlines {
     pub(crate) const HIGHLIGHTS: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
         objects: Some(ObjectEdges {
-            color: bevy::color::Color::BLACK,
+            color: Color::BLACK,
             opacity: 1.0,
         }),
         width: 0.5,

@@ -1,10 +1,6 @@
 //! How wide lines are in different places: the settings, and what the shaders read of them.
 
-use bevy::{
-    math::{Vec2, Vec3},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
-};
+use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};
 
 use crate::{

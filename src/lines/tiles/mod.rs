@@ -2,10 +2,10 @@
 //! cracks nearby, which `tiles.wgsl` lists.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     core_pipeline::FullscreenShader,
-    math::{UVec2, Vec4Swizzles},
     mesh::VertexBufferLayout,
+    prelude::*,
     render::{
         render_resource::{
             BindGroup, BindGroupEntry, Buffer, BufferUsages, PrimitiveState, PrimitiveTopology,
@@ -13,7 +13,6 @@ use bevy::{
         },
         renderer::{RenderDevice, RenderQueue},
     },
-    shader::Shader,
 };
 
 use crate::{

@@ -7,17 +7,10 @@ use std::sync::{
 };
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        query::With,
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::UVec4,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         render_resource::{
@@ -30,7 +23,6 @@ use bevy::{
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
     },
-    shader::Shader,
 };
 
 use super::{DepthTest, watch::Reading};

@@ -13,18 +13,10 @@ use std::sync::{
 };
 
 use bevy::{
-    app::{App, SubApp},
     asset::embedded_asset,
-    ecs::{
-        reflect::ReflectResource,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Res, ResMut},
-    },
-    log::warn,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
     render::{
-        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup, RenderSystems,
+        Extract, GpuResourceAppExt, Render, RenderStartup, RenderSystems,
         render_resource::SpecializedComputePipelines,
     },
     shader::load_shader_library,

@@ -1,11 +1,6 @@
 //! The groups after changes, against a scan of the whole hierarchy.
 
-use bevy::{
-    app::TaskPoolPlugin,
-    asset::{AssetApp, AssetPlugin, AssetServer, Handle},
-    ecs::{entity::EntityHashMap, world::World},
-    mesh::Mesh,
-};
+use bevy::ecs::entity::EntityHashMap;
 
 use super::*;
 
@@ -43,10 +38,10 @@ fn scan(world: &mut World) -> EntityHashMap<Entity> {
     let siblings = |mesh: Entity| -> Vec<Entity> {
         let parent = world.get::<ChildOf>(mesh).map(ChildOf::parent);
         let children = parent.and_then(|parent| world.get::<Children>(parent));
-        let children = children.into_iter().flat_map(|c| c.iter().copied());
+        let children = children.into_iter().flatten().copied();
         children.filter(|c| !grouped.contains_key(c)).collect()
     };
-    let path = |mesh: Entity| world.get::<Mesh3d>(mesh)?.path().cloned();
+    let path = |mesh: Entity| world.get::<Mesh3d>(mesh)?.0.path().cloned();
     let object = |mesh: Entity| {
         let own = path(mesh)?;
         let before = siblings(mesh).into_iter().take_while(|s| *s != mesh);

@@ -1,9 +1,9 @@
 //! Divides a mesh into sections: parts that bend nowhere as sharply as a given angle.
 
 use bevy::{
-    math::{IVec3, Vec3},
-    mesh::{Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues},
+    mesh::{MeshAccessError, PrimitiveTopology, VertexAttributeValues},
     platform::collections::{HashMap, HashSet},
+    prelude::*,
 };
 
 use super::{ATTRIBUTE_MESH_SECTION, Origin};

@@ -4,27 +4,11 @@ mod divide;
 mod table;
 
 use bevy::{
-    app::{App, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, AssetId, Assets},
-    ecs::{
-        change_detection::DetectChanges,
-        component::Component,
-        entity::{Entity, EntityHashSet},
-        lifecycle::RemovedComponents,
-        message::MessageReader,
-        query::{Added, Changed, Has, Or, With},
-        reflect::ReflectComponent,
-        resource::Resource,
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Query, Res, ResMut, SystemParam},
-    },
-    log::{info_once, warn, warn_once},
-    mesh::{
-        Mesh, Mesh3d, MeshVertexAttribute, VertexFormat, morph::MeshMorphWeights,
-        skinning::SkinnedMesh,
-    },
+    asset::AssetEventSystems,
+    ecs::{entity::EntityHashSet, system::SystemParam},
+    mesh::{MeshVertexAttribute, VertexFormat, morph::MeshMorphWeights, skinning::SkinnedMesh},
     platform::collections::{HashMap, HashSet},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
     render::{RenderApp, renderer::RenderDevice, settings::WgpuFeatures},
     tasks::{AsyncComputeTaskPool, Task, block_on, futures_lite::future},
 };

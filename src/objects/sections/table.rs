@@ -3,14 +3,9 @@
 use std::ops::Range;
 
 use bevy::{
-    asset::AssetId,
-    ecs::{
-        entity::{Entity, EntityHashMap, EntityHashSet},
-        resource::Resource,
-        system::{Res, ResMut},
-    },
-    mesh::Mesh,
+    ecs::entity::{EntityHashMap, EntityHashSet},
     platform::collections::HashMap,
+    prelude::*,
     render::{
         Extract,
         render_resource::Buffer,

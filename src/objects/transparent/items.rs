@@ -1,17 +1,14 @@
 //! The pipelines and phase items that draw transparent meshes into a view's own depth.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     core_pipeline::prepass::NORMAL_PREPASS_FORMAT,
-    ecs::{
-        resource::Resource,
-        system::{Commands, Res, ResMut, SystemParam},
-    },
-    log::{error_once, warn_once},
-    material::{AlphaMode, MaterialProperties, key::ErasedMaterialPipelineKey},
+    ecs::system::SystemParam,
+    material::{MaterialProperties, key::ErasedMaterialPipelineKey},
     mesh::MeshVertexBufferLayoutRef,
-    pbr::{Material, MeshPipelineKey, PrepassFragmentShader, StandardMaterial},
+    pbr::{MeshPipelineKey, PrepassFragmentShader},
     platform::sync::Arc,
+    prelude::*,
     render::{
         render_resource::{
             CompareFunction, FragmentState, PipelineCache, RenderPipelineDescriptor,
@@ -20,7 +17,7 @@ use bevy::{
         },
         sync_world::MainEntity,
     },
-    shader::{Shader, ShaderRef},
+    shader::ShaderRef,
 };
 
 use crate::objects::{

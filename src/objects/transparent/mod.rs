@@ -5,18 +5,11 @@ mod items;
 mod pass;
 
 use bevy::{
-    app::{App, PostUpdate},
     asset::embedded_asset,
     core_pipeline::schedule::{Core3d, Core3dSystems},
-    ecs::{
-        component::Component,
-        reflect::ReflectComponent,
-        schedule::IntoScheduleConfigs,
-        system::{Res, ResMut},
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
+    prelude::*,
     render::{
-        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
+        GpuResourceAppExt, Render, RenderApp, RenderStartup,
         render_resource::{SpecializedMeshPipelines, SpecializedRenderPipelines},
         renderer::RenderAdapterInfo,
     },
@@ -53,7 +46,7 @@ pub(super) use items::TransparentItems;
 ///
 /// | material | pixels that are written |
 /// |---|---|
-/// | [`StandardMaterial`](bevy::pbr::StandardMaterial), `ToonMaterial`, and extended materials with the prepass shader of the standard material | those with an alpha of at least [`alpha_cutoff`](Self::alpha_cutoff) |
+/// | [`StandardMaterial`], `ToonMaterial`, and extended materials with the prepass shader of the standard material | those with an alpha of at least [`alpha_cutoff`](Self::alpha_cutoff) |
 /// | any other | the whole mesh; the log says so once |
 /// | any whose `Material::enable_prepass` is `false` | none; the log says so once |
 ///

@@ -3,22 +3,14 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
+    asset::load_embedded_asset,
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::{
         FullscreenShader,
         core_3d::CORE_3D_DEPTH_FORMAT,
         prepass::{NORMAL_PREPASS_FORMAT, ViewPrepassTextures},
     },
-    ecs::{
-        entity::Entity,
-        query::{With, Without},
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut},
-        world::World,
-    },
-    log::error_once,
-    math::UVec2,
+    prelude::*,
     render::{
         camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
@@ -32,7 +24,6 @@ use bevy::{
         texture::{CachedTexture, TextureCache},
         view::{ExtractedView, ViewDepthTexture},
     },
-    shader::Shader,
 };
 
 use crate::{

@@ -1,9 +1,4 @@
-use bevy::{
-    asset::RenderAssetUsages,
-    math::primitives::{Cuboid, Cylinder, Sphere, Torus},
-    mesh::{Indices, Mesh, MeshBuilder, Meshable},
-    prelude::Vec3,
-};
+use bevy::{asset::RenderAssetUsages, mesh::Indices};
 
 use super::*;
 
