@@ -6,7 +6,7 @@ use std::path::Path;
 use bevy::{
     ecs::system::RunSystemOnce,
     prelude::*,
-    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
+    render::{RenderApp, sync_world::RenderEntity},
 };
 use bevy_comics::{
     Colorization, ComicStyle, ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation,

@@ -7,7 +7,7 @@ use std::{
     path::Path,
 };
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::prelude::*;
 use bevy_comics::{Paint, objects::PatternAnchor, presets};
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::prelude::*;
 use bevy_comics::{
     ComicStyle, Impact, MotionLines, Outlines, Paper, SpeedLines, ToneBands, ToonLight,
     effects::SpeedLineKind, presets, toon::Ramp,

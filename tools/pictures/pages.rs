@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use bevy::{
-    camera::{Camera3dDepthLoadOp, ClearColorConfig, Viewport, visibility::RenderLayers},
+    camera::{Camera3dDepthLoadOp, Viewport, visibility::RenderLayers},
     core_pipeline::tonemapping::Tonemapping,
     light::NotShadowCaster,
     prelude::*,
-    render::view::Msaa,
 };
 use bevy_comics::{
     ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle, Outlines,

@@ -2,7 +2,7 @@
 
 use std::{thread, time::Duration};
 
-use bevy::{prelude::*, render::view::Msaa, time::TimeUpdateStrategy};
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_comics::{
     presets,
     toon::{ProxyShape, ShadingProxy, ToonShading},

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
+use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*};
 use bevy_comics::{
     ComicStyle, ComicsPlugin, Outlines, ToneRamp, ToonLight, ToonMaterial, ToonScene, presets,
     toon::{

@@ -16,7 +16,7 @@ mod turntable;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Ortho, Output, SceneChoice};
-use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
+use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*};
 use bevy_comics::{ComicsPlugin, objects::MeshSections};
 use bevy_comics_testkit::{
     before::BeforeStylize,

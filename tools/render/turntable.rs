@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use bevy::{light::EnvironmentMapLight, prelude::*};
+use bevy::prelude::*;
 use bevy_comics_testkit::headless::Headless;
 
 use crate::{

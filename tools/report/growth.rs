@@ -1,6 +1,6 @@
 //! How the cost grows with pixels, vertices and cameras.
 
-use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
+use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*};
 
 use bevy_comics::{Colorization, ComicStyle, DepthMap};
 use bevy_comics_testkit::{headless::new_target, scenes::BuiltIn, work::default_comic};

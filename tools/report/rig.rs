@@ -4,7 +4,7 @@ use bevy::{
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::system::RunSystemOnce,
     prelude::*,
-    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
+    render::{RenderApp, sync_world::RenderEntity},
 };
 use bevy_comics::{ComicStyle, ComicsPlugin};
 

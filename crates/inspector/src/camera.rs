@@ -1,23 +1,10 @@
 //! The camera that draws the panel, and the panel's part of a frame.
 
 use bevy::{
-    camera::{
-        Camera, Camera2d, CameraOutputMode, ClearColorConfig, RenderTarget,
-        visibility::RenderLayers,
-    },
-    color::Color,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        name::Name,
-        query::With,
-        system::Local,
-        world::{Mut, World},
-    },
-    log::error_once,
-    math::UVec2,
-    render::{render_resource::BlendState, view::Msaa},
-    window::{PrimaryWindow, Window, WindowRef},
+    camera::{CameraOutputMode, RenderTarget, visibility::RenderLayers},
+    prelude::*,
+    render::render_resource::BlendState,
+    window::{PrimaryWindow, WindowRef},
 };
 use bevy_egui::{EguiContext, EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, egui};
 

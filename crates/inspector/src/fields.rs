@@ -12,13 +12,9 @@ mod vectors;
 mod widgets;
 
 use bevy::{
-    asset::Handle,
-    color::Color,
-    image::Image,
-    math::{Vec2, Vec3},
+    prelude::*,
     reflect::{
-        NamedField, PartialReflect, Reflect, ReflectMut, ReflectRef, TypeInfo, TypeRegistry,
-        UnnamedField, enums::EnumInfo, std_traits::ReflectDefault, structs::Struct,
+        NamedField, ReflectMut, ReflectRef, TypeInfo, TypeRegistry, UnnamedField, enums::EnumInfo,
     },
 };
 use bevy_egui::egui::{self, CollapsingHeader, Response, Ui};

@@ -8,10 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bevy::{
-    ecs::entity::{Entity, EntityHashMap},
-    log::warn,
-};
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
 
 use bevy_comics::{ComicStyle, effect::EffectRegistry, style::ComicStyleError};
 

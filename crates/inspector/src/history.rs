@@ -2,10 +2,7 @@
 
 use std::any::TypeId;
 
-use bevy::{
-    asset::UntypedAssetId,
-    ecs::{entity::Entity, world::World},
-};
+use bevy::{asset::UntypedAssetId, prelude::*};
 
 use bevy_comics::ComicStyle;
 

@@ -1,9 +1,6 @@
 //! The borders of `DepthLayers` in the histogram of depths, which can be dragged.
 
-use bevy::{
-    camera::{Camera, Projection},
-    ecs::{entity::Entity, world::World},
-};
+use bevy::prelude::*;
 use bevy_egui::egui::{CursorIcon, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Ui};
 
 use super::{Widgets, note};
@@ -138,8 +135,6 @@ fn step(ui: &Ui, response: &Response) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use bevy::math::Mat4;
-
     use super::*;
     use bevy_comics::{DepthMap, DepthMapping};
 

@@ -53,27 +53,12 @@ use std::{
 };
 
 use bevy::{
-    app::{App, Plugin, PostUpdate, PreUpdate},
-    asset::Assets,
-    ecs::{
-        component::Component,
-        entity::Entity,
-        message::{MessageCursor, Messages},
-        query::With,
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Local, Query, Res, ResMut},
-        world::{Mut, World},
-    },
-    input::{
-        ButtonInput, InputPlugin, InputSystems,
-        keyboard::{KeyCode, KeyboardInput},
-    },
-    log::error,
+    ecs::message::MessageCursor,
+    input::{InputPlugin, InputSystems, keyboard::KeyboardInput},
     platform::collections::HashMap,
+    prelude::*,
     render::{Render, RenderApp, RenderSystems, render_resource::PipelineCache},
-    shader::Shader,
-    window::{PrimaryWindow, Window, WindowPlugin},
+    window::PrimaryWindow,
 };
 use bevy_egui::{EguiPostUpdateSet, egui};
 

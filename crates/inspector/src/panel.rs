@@ -8,15 +8,7 @@ mod toolbar;
 
 use std::path::PathBuf;
 
-use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashMap},
-        resource::Resource,
-        world::World,
-    },
-    math::Vec2,
-    reflect::TypeRegistry,
-};
+use bevy::{ecs::entity::EntityHashMap, prelude::*, reflect::TypeRegistry};
 use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui, UiBuilder};
 
 use self::{

@@ -8,17 +8,8 @@ use std::{
 };
 
 use bevy::{
-    asset::{Assets, Handle},
-    camera::{Camera, Camera3d, ImageRenderTarget, Projection, RenderTarget, Viewport},
-    ecs::{
-        change_detection::DetectChangesMut,
-        entity::Entity,
-        observer::On,
-        query::{With, Without},
-        world::World,
-    },
-    image::Image,
-    math::UVec2,
+    camera::{ImageRenderTarget, RenderTarget, Viewport},
+    prelude::*,
     render::{
         render_resource::TextureFormat,
         renderer::RenderDevice,

@@ -6,13 +6,8 @@ use std::{
 };
 
 use bevy::{
-    asset::{Assets, Handle},
-    camera::{Camera, RenderTarget},
-    ecs::{entity::Entity, entity::EntityCloner, world::World},
-    image::Image,
-    platform::collections::HashMap,
+    camera::RenderTarget, ecs::entity::EntityCloner, platform::collections::HashMap, prelude::*,
     render::render_resource::TextureFormat,
-    transform::components::GlobalTransform,
 };
 use bevy_egui::{
     EguiTextureHandle, EguiUserTextures,

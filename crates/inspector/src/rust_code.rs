@@ -1,12 +1,10 @@
 //! Styles as Rust source.
 
 use bevy::{
-    color::{Color, ColorToComponents, Srgba},
+    prelude::*,
     reflect::{
-        PartialReflect, ReflectRef, TypeInfo, TypeRegistry,
+        ReflectRef, TypeInfo, TypeRegistry,
         enums::{Enum, VariantType},
-        std_traits::ReflectDefault,
-        structs::Struct,
     },
 };
 
@@ -171,7 +169,7 @@ impl Writer {
         }
     }
 
-    fn default_of(&self, value: &dyn PartialReflect) -> Option<Box<dyn bevy::reflect::Reflect>> {
+    fn default_of(&self, value: &dyn PartialReflect) -> Option<Box<dyn Reflect>> {
         let id = value.get_represented_type_info()?.type_id();
         let default = self.types.get_type_data::<ReflectDefault>(id)?;
         Some(default.default())

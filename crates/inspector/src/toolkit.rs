@@ -2,13 +2,7 @@
 //! windows.
 
 use bevy::{
-    app::{App, Plugin},
-    camera::Camera,
-    ecs::{
-        query::{With, Without},
-        resource::Resource,
-        world::World,
-    },
+    prelude::*,
     render::{RenderApp, renderer::RenderDevice},
 };
 use bevy_egui::{EguiContext, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use bevy::{
     app::{PluginGroupBuilder, PluginsState},
-    asset::{AssetPlugin, RenderAssetUsages},
+    asset::RenderAssetUsages,
     camera::{ImageRenderTarget, RenderTarget},
-    ecs::schedule::{Schedules, SingleThreadedExecutor},
+    ecs::schedule::SingleThreadedExecutor,
     log::LogPlugin,
     prelude::*,
     render::{

@@ -16,12 +16,12 @@ use std::{
 use bevy::{
     app::SubApps,
     diagnostic::FrameCount,
-    ecs::{component::ComponentId, resource::IsResource, schedule::Schedules},
+    ecs::{component::ComponentId, resource::IsResource},
     light::DirectionalLightShadowMap,
     pbr::DefaultOpaqueRendererMethod,
     prelude::*,
     render::RenderApp,
-    time::{Fixed, Real, TimeUpdateStrategy, Virtual},
+    time::TimeUpdateStrategy,
 };
 use bevy_comics::{ReduceFlashing, cameras::WorldOrigin, objects::ObjectIdDepthTest};
 

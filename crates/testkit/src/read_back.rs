@@ -2,9 +2,7 @@
 
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::{entity::Entity, world::World},
-    math::Vec4Swizzles,
-    prelude::default,
+    prelude::*,
     render::{
         renderer::{RenderDevice, RenderQueue},
         view::ViewTarget,

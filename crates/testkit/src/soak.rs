@@ -15,7 +15,6 @@ use bevy::{
         error_handler::{RenderErrorHandler, RenderErrorPolicy},
         render_resource::TextureFormat,
         renderer::RenderInstance,
-        view::Msaa,
     },
 };
 use bevy_comics::{

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bevy::{
     camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
-    prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
+    prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
     ComicStyle, ComicsPlugin, DepthMap, Focus, Halftone, Hatching, IsoLines, Outlines, Paint,

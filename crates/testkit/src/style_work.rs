@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bevy::{
     prelude::*,
-    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
+    render::{RenderApp, sync_world::RenderEntity},
     time::TimeUpdateStrategy,
 };
 use bevy_comics::{ComicStyle, Outlines, presets, style::Preset};

@@ -10,7 +10,6 @@ use bevy::{
         RenderApp,
         render_resource::{PipelineCache, PipelineDescriptor},
         sync_world::RenderEntity,
-        view::Msaa,
     },
     shader::Source,
 };

@@ -6,7 +6,7 @@ mod stages;
 
 use std::path::Path;
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::prelude::*;
 use bevy_comics::{
     ComicStyle, Desaturation, IsoLines, Outlines, ToneBands,
     lines::{CreaseSource, Creases, EdgeStyle, LineBoil, LineColor, LineWeight},

@@ -3,7 +3,6 @@
 use bevy::{
     anti_alias::taa::TemporalAntiAliasing,
     core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass},
-    pbr::{DistanceFog, FogFalloff},
     prelude::*,
 };
 use bevy_comics::{

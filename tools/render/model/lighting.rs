@@ -4,9 +4,7 @@
 use std::f32::consts::PI;
 
 use bevy::{
-    camera::Exposure,
-    core_pipeline::tonemapping::Tonemapping,
-    light::{CascadeShadowConfigBuilder, EnvironmentMapLight},
+    camera::Exposure, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder,
     prelude::*,
 };
 

@@ -13,9 +13,8 @@ use bevy::{
         AssetPath, LoadState, RecursiveDependencyLoadState, io::embedded::EmbeddedAssetRegistry,
     },
     ecs::system::RunSystemOnce,
-    gltf::{GltfAssetLabel, GltfLoaderSettings},
+    gltf::GltfLoaderSettings,
     prelude::*,
-    world_serialization::WorldAssetRoot,
 };
 
 use bevy_comics_testkit::{

@@ -1,9 +1,6 @@
 //! The tones of a ramp as a bar, and the place of a new one.
 
-use bevy::{
-    color::{Color, ColorToPacked, LinearRgba, Mix},
-    reflect::PartialReflect,
-};
+use bevy::prelude::*;
 use bevy_egui::egui::{Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::{

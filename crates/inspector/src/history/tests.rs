@@ -1,5 +1,3 @@
-use bevy::ecs::resource::Resource;
-
 use super::*;
 
 const FIRST: Entity = Entity::from_raw_u32(1).expect("an entity");

@@ -1,17 +1,7 @@
 //! The color and the gloss of a picked object: its standard material, or the base of its toon
 //! material.
 
-use bevy::{
-    asset::{Assets, Handle},
-    color::Color,
-    ecs::{
-        entity::Entity,
-        query::With,
-        world::{EntityRef, World},
-    },
-    pbr::{MeshMaterial3d, StandardMaterial},
-    reflect::Reflect,
-};
+use bevy::prelude::*;
 use bevy_egui::egui::Ui;
 
 use super::{

@@ -1,12 +1,7 @@
 //! The box around a picked object, drawn over the view by the panel. The game's own outlines
 //! of selected objects stay as they are.
 
-use bevy::{
-    camera::Camera,
-    ecs::{entity::Entity, world::World},
-    math::{Mat4, Rect, Vec2, Vec3, Vec4},
-    transform::components::GlobalTransform,
-};
+use bevy::prelude::*;
 use bevy_egui::egui::{self, Color32, Pos2, Stroke, Ui};
 
 use super::{super::Widgets, pick::corners};

@@ -1,10 +1,6 @@
 //! The light of a picked object.
 
-use bevy::{
-    asset::Handle,
-    ecs::{entity::Entity, world::World},
-    pbr::{MeshMaterial3d, StandardMaterial},
-};
+use bevy::prelude::*;
 use bevy_egui::egui::Ui;
 
 use super::{

@@ -1,10 +1,6 @@
 //! Where the lighting of a mesh is set.
 
-use bevy::{
-    asset::{Assets, Handle},
-    ecs::{entity::Entity, query::With, world::World},
-    pbr::MeshMaterial3d,
-};
+use bevy::prelude::*;
 
 use bevy_comics::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle, toon::ToonShading};
 

@@ -19,11 +19,7 @@ mod surface;
 
 use std::path::PathBuf;
 
-use bevy::{
-    ecs::{entity::Entity, hierarchy::ChildOf, name::Name, world::World},
-    platform::collections::HashMap,
-    reflect::{Reflect, TypeRegistry},
-};
+use bevy::{platform::collections::HashMap, prelude::*, reflect::TypeRegistry};
 use bevy_egui::egui::{RichText, Ui};
 
 pub use self::{

@@ -3,13 +3,9 @@
 use std::any::TypeId;
 
 use bevy::{
-    ecs::{
-        component::{Component, Mutable},
-        entity::Entity,
-        hierarchy::ChildOf,
-        world::{EntityRef, World},
-    },
-    reflect::{Reflect, TypeRegistry, Typed, structs::Struct},
+    ecs::component::Mutable,
+    prelude::*,
+    reflect::{TypeRegistry, Typed},
 };
 use bevy_egui::egui::Ui;
 

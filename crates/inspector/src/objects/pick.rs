@@ -6,19 +6,12 @@
 
 use std::any::TypeId;
 
-#[cfg(any(feature = "toon", feature = "objects"))]
-use bevy::pbr::{Material, MeshMaterial3d, StandardMaterial};
 use bevy::{
-    asset::Assets,
-    camera::{Camera, RenderTarget, primitives::Aabb, visibility::VisibleEntities},
-    ecs::{entity::Entity, query::With, world::World},
-    math::{Affine3A, Mat4, Vec2, Vec3},
-    mesh::{
-        Mesh, Mesh3d,
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
+    camera::{RenderTarget, primitives::Aabb, visibility::VisibleEntities},
+    math::Affine3A,
+    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    prelude::*,
     render::render_resource::Face,
-    transform::components::GlobalTransform,
     window::{PrimaryWindow, WindowRef},
 };
 

@@ -1,10 +1,6 @@
 //! Steps of the history that change materials.
 
-use bevy::{
-    asset::{Assets, Handle},
-    ecs::{entity::Entity, world::World},
-    pbr::{Material, MeshMaterial3d, StandardMaterial},
-};
+use bevy::prelude::*;
 
 use super::{
     super::history::{Exchange, Subject},

@@ -5,10 +5,6 @@ mod page;
 #[cfg(feature = "toon")]
 mod widgets;
 
-use bevy::{
-    asset::Assets,
-    ecs::{entity::Entity, world::World},
-};
 use bevy_egui::egui;
 
 use super::*;
@@ -45,7 +41,7 @@ impl Page {
     }
 
     /// Adds an asset.
-    fn add<A: bevy::asset::Asset>(&mut self, asset: A) -> bevy::asset::Handle<A> {
+    fn add<A: Asset>(&mut self, asset: A) -> Handle<A> {
         self.world
             .get_resource_or_init::<Assets<A>>()
             .into_inner()

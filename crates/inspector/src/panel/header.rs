@@ -1,14 +1,6 @@
 //! The head of the panel: which camera and which page it shows, and where it is.
 
-use bevy::{
-    camera::{Camera, Camera3d},
-    ecs::{
-        entity::Entity,
-        name::Name,
-        query::{With, Without},
-        world::World,
-    },
-};
+use bevy::prelude::*;
 use bevy_egui::egui::{self, ComboBox, RichText, Ui};
 
 use super::{

@@ -1,9 +1,6 @@
 //! Picking an object in the view.
 
-use bevy::{
-    ecs::{entity::Entity, world::World},
-    math::Vec2,
-};
+use bevy::prelude::*;
 use bevy_egui::egui::{Key, Popup, Ui};
 
 use super::{

@@ -1,5 +1,3 @@
-use bevy::{math::Vec2, reflect::Reflect};
-
 use super::*;
 use bevy_comics::{
     BlackFlats, Contours, DepthMapping, Outlines, ToneBands,

@@ -9,19 +9,14 @@ use std::{
 
 use bevy::{
     anti_alias::{fxaa::fxaa, smaa::smaa},
-    app::{App, Plugin},
     core_pipeline::{
         schedule::{Core3d, Core3dSystems},
         tonemapping::tonemapping,
         upscaling::upscaling,
     },
-    ecs::{
-        resource::Resource,
-        schedule::IntoScheduleConfigs,
-        system::{Res, ResMut},
-    },
+    prelude::*,
     render::{
-        Extract, ExtractSchedule, Render, RenderApp, RenderSystems,
+        Extract, Render, RenderApp, RenderSystems,
         renderer::{RenderAdapterInfo, RenderDevice},
     },
 };

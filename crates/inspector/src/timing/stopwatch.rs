@@ -15,12 +15,8 @@ use std::{
 };
 
 use bevy::{
-    ecs::{
-        resource::Resource,
-        schedule::{ApplyDeferred, IntoScheduleConfigs, ScheduleConfigs},
-        system::{Res, ResMut, ScheduleSystem},
-        world::World,
-    },
+    ecs::{schedule::ScheduleConfigs, system::ScheduleSystem},
+    prelude::*,
     render::{
         render_resource::WgpuFeatures,
         renderer::{PendingCommandBuffers, RenderAdapterInfo, RenderDevice, RenderQueue},

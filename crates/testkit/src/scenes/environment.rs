@@ -4,7 +4,7 @@
 //! The studio is filtered here, on the CPU and once, because the engine's own
 //! `GeneratedEnvironmentMapLight` filters its map again in every frame.
 
-use bevy::{light::EnvironmentMapLight, prelude::*};
+use bevy::prelude::*;
 
 use super::sky::{cube_map, direction_of_texel};
 

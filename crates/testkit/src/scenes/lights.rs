@@ -1,9 +1,6 @@
 //! Other lights for a scene of the size of the theatre: one kind alone.
 
-use bevy::{
-    light::{EnvironmentMapLight, RectLight},
-    prelude::*,
-};
+use bevy::prelude::*;
 
 use super::{ScenePart, lamplight, noise::smoothstep, shadows_within, sky::cube_map, sunlight};
 

@@ -1,11 +1,7 @@
 //! A large landscape: a meadow with flowers, trees, hills and distant mountains (\[CS\]
 //! Figure 4). The ground has one million vertices.
 
-use bevy::{
-    light::light_consts::lux,
-    math::{Vec2, Vec3Swizzles},
-    prelude::*,
-};
+use bevy::{light::light_consts::lux, prelude::*};
 
 use bevy_comics::OutlineGroup;
 

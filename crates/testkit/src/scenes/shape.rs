@@ -2,7 +2,7 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{Affine3A, Mat3A},
+    math::Affine3A,
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };

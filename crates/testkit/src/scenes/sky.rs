@@ -2,7 +2,6 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::Vec2,
     prelude::*,
     render::render_resource::{
         Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,

@@ -4,7 +4,7 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    light::{NotShadowCaster, SpotLight},
+    light::NotShadowCaster,
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };

@@ -1,7 +1,7 @@
 //! A village: many objects at many distances, from a barrel near the camera to a
 //! windmill on a hill.
 
-use bevy::{light::light_consts::lux, math::Vec2, prelude::*};
+use bevy::{light::light_consts::lux, prelude::*};
 
 use super::{
     Stage, Vantage,

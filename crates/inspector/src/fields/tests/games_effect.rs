@@ -1,9 +1,6 @@
 //! An effect of a game, with types that this crate does not know.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-};
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Page;

@@ -1,5 +1,3 @@
-use bevy::{asset::Assets, color::Color, ecs::name::Name};
-
 use super::*;
 use bevy_comics::{
     ToonMaterial, ToonScene,

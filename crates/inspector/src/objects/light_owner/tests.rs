@@ -1,15 +1,6 @@
 //! An edit in a place is what the mesh is drawn with, and stays.
 
-use bevy::{
-    MinimalPlugins,
-    app::App,
-    asset::{Asset, AssetApp, AssetPlugin},
-    ecs::hierarchy::ChildOf,
-    image::ImagePlugin,
-    mesh::MeshPlugin,
-    pbr::{PbrPlugin, StandardMaterial},
-    shader::Shader,
-};
+use bevy::{mesh::MeshPlugin, pbr::PbrPlugin};
 
 use super::*;
 use bevy_comics::{ComicsPlugin, toon::MaterialName};

@@ -1,12 +1,6 @@
 use bevy::{
-    asset::Handle,
     camera::primitives::MeshAabb,
-    math::{
-        Dir3, Quat, Ray3d,
-        primitives::{Cuboid, Plane3d},
-    },
-    mesh::{Indices, MeshBuilder, Meshable, PrimitiveTopology, VertexAttributeValues},
-    transform::components::Transform,
+    mesh::{Indices, PrimitiveTopology, VertexAttributeValues},
 };
 
 use super::*;

@@ -1,11 +1,5 @@
 //! Edits of different kinds in one history, and what they change.
 
-use bevy::{
-    asset::Handle,
-    color::Color,
-    pbr::{MeshMaterial3d, StandardMaterial},
-};
-
 use super::*;
 use bevy_comics::{
     NoOutlines, OutlineStyle, ToonLight, ToonMaterial, ToonShadingHandle, objects::MeshSections,

@@ -1,13 +1,6 @@
 //! A widget for every kind of value of a light.
 
-use bevy::{
-    asset::Handle,
-    color::Color,
-    image::Image,
-    math::{Vec2, Vec3},
-    pbr::{MeshMaterial3d, StandardMaterial},
-    reflect::{PartialReflect, ReflectRef},
-};
+use bevy::reflect::ReflectRef;
 
 use super::*;
 use bevy_comics::{
