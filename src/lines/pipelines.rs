@@ -103,7 +103,7 @@ impl SearchPass {
         let completing = [
             (LineKey::LEDGES, Self::Join),
             (LineKey::HOLDS, Self::Hold(key.for_hold())),
-            (LineKey::BRIDGED, Self::CloseGaps),
+            (LineKey::CLOSED_GAPS, Self::CloseGaps),
             (LineKey::BUDGET, Self::Measure { coarse: false }),
             (LineKey::BUDGET, Self::Measure { coarse: true }),
             (LineKey::COMPLETED, Self::Corners),

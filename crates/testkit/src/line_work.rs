@@ -100,9 +100,9 @@ const ENDS: [End; 4] = [
         counted: "drawn.ink = unpack4x8unorm(packed_count());\n    return drawn;",
         handed: "
 #ifdef COLUMNS
-    drawn.ink = unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
+    drawn.ink = unpack4x8unorm(textureLoad(column_texture, center, 0).x);
 #else
-    drawn.ink = unpack4x8unorm(load_cracks(line_pass.grid, centre).x);
+    drawn.ink = unpack4x8unorm(load_cracks(line_pass.grid, center).x);
 #endif
     return drawn;
 ",

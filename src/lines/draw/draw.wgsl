@@ -13,7 +13,7 @@
     CONCAVE, CONVEX, OBJECT, encode_ink, ink_of, inward_step, is_apart, is_convex, largest_opacity, owner_step,
     unpack_middle, unpack_owner, unpack_width,
 }
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
 #import bevy_comics::lines::gaps::source_of
 #endif
 #import bevy_comics::lines::pass::line_pass
@@ -29,7 +29,7 @@
 #ifdef BLOCKS
 #import bevy_comics::lines::edge::Grid
 #ifdef COLUMNS
-#import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
+#import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, crack_rows}
 #else
 #import bevy_comics::lines::read_planes::{corner_rows, inked_rows}
 #endif
@@ -60,7 +60,7 @@ struct Ink {
     convex: f32,
     concave: f32,
     strongest: f32,
-    // The pixel that owns the strongest line. BRIDGED: and its crack, as in chain.wgsl.
+    // The pixel that owns the strongest line. CLOSED_GAPS: and its crack, as in chain.wgsl.
     owner: vec2<i32>,
     crack: vec3<i32>,
     // Two lines in different places whose borders are nearest: their middles, and the
@@ -122,7 +122,7 @@ fn add_ink(ink: ptr<function, Ink>, packed: u32, covered: f32, owner: Owner) {
     let stronger = alpha > (*ink).strongest;
     (*ink).owner = select((*ink).owner, owner.pixel, stronger);
     (*ink).strongest = max((*ink).strongest, alpha);
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     (*ink).crack = select((*ink).crack, crack_of(packed, owner), stronger);
 #endif
 #endif
@@ -145,7 +145,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
     (*ink).packed = select((*ink).packed, packed, nearest);
 #ifdef OWNERS
     (*ink).first_owner = select((*ink).first_owner, owner.pixel, nearest);
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     (*ink).first_crack = select((*ink).first_crack, crack_of(packed, owner), nearest);
 #endif
 #ifdef INWARD
@@ -207,17 +207,17 @@ fn has_columns(g: Grid, block: i32, y: i32) -> bool {
     let last = min(y + g.reach, g.rect.w - 1);
     var rows = 0u;
     for (var row = first / BLOCK_HEIGHT; row <= last / BLOCK_HEIGHT; row++) {
-        rows |= marked_rows(vec2(block, row), first, last);
+        rows |= crack_rows(vec2(block, row), first, last);
     }
     return rows != 0u;
 }
 
 // Adds the columns of a row of pixels. Blocks without cracks nearby are left out.
-fn add_columns(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
+fn add_columns(ink: ptr<function, Ink>, center: vec2<i32>, at: vec2<f32>) {
     let g = line_pass.grid;
-    let y = clamp(centre.y, 0, g.rect.w - 1);
-    let first = max(centre.x - g.reach - 1, 0) / BLOCK_WIDTH;
-    let last = min(centre.x + g.reach, g.rect.z - 1) / BLOCK_WIDTH;
+    let y = clamp(center.y, 0, g.rect.w - 1);
+    let first = max(center.x - g.reach - 1, 0) / BLOCK_WIDTH;
+    let last = min(center.x + g.reach, g.rect.z - 1) / BLOCK_WIDTH;
     // One bit for each block; lines reach less than 32 blocks far.
     var blocks = 0u;
     for (var block = first; block <= last; block++) {
@@ -236,7 +236,7 @@ fn add_columns(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
 #endif
 
 #ifdef BLOCKS
-#ifdef NEIGHBOURS
+#ifdef NEIGHBORS
 #ifdef COMPLETED
 // The cracks of four rows of two columns of pixels, from the row `first` on: bit 4 * row + 2 * column + side.
 fn two_columns(g: Grid, columns: vec2<i32>, first: i32) -> u32 {
@@ -302,9 +302,9 @@ fn near_step(place: u32) -> i32 {
 }
 
 // Adds the crack of a bit of near_cracks.
-fn add_near(ink: ptr<function, Ink>, centre: vec2<i32>, bit: u32, at: vec2<f32>) {
+fn add_near(ink: ptr<function, Ink>, center: vec2<i32>, bit: u32, at: vec2<f32>) {
     let south = (bit & 1u) != 0u;
-    let p = centre + vec2(near_step((bit >> 1u) & 3u), near_step(bit >> 3u));
+    let p = center + vec2(near_step((bit >> 1u) & 3u), near_step(bit >> 3u));
     let cracks = load_cracks(line_pass.grid, p);
     let bends = load_bends(line_pass.grid, p);
     let packed = select(cracks.x, cracks.y, south);
@@ -328,50 +328,50 @@ fn add_inked(ink: ptr<function, Ink>, x: i32, y: i32, at: vec2<f32>) {
 #endif
 
 // Adds the lines near a position of the grid.
-fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
+fn search(ink: ptr<function, Ink>, center: vec2<i32>, at: vec2<f32>) {
     let g = line_pass.grid;
 #ifdef BLOCKS
-#ifdef NEIGHBOURS
-    var near = near_cracks(g, centre);
+#ifdef NEIGHBORS
+    var near = near_cracks(g, center);
     while near != 0u {
-        add_near(ink, centre, firstTrailingBit(near), at);
+        add_near(ink, center, firstTrailingBit(near), at);
         near &= near - 1u;
     }
 #else ifdef COLUMNS
-    add_columns(ink, centre, at);
+    add_columns(ink, center, at);
 #else
-    for (var x = centre.x - g.reach; x <= centre.x + g.reach; x++) {
-        add_inked(ink, x, centre.y, at);
+    for (var x = center.x - g.reach; x <= center.x + g.reach; x++) {
+        add_inked(ink, x, center.y, at);
     }
 #endif
-#else ifdef NEIGHBOURS
+#else ifdef NEIGHBORS
     // CPU adapters execute the body of a loop once more than it iterates.
-    add_pixel(ink, centre + vec2(-1, -1), at);
-    add_pixel(ink, centre + vec2(0, -1), at);
-    add_pixel(ink, centre + vec2(1, -1), at);
-    add_pixel(ink, centre + vec2(-1, 0), at);
-    add_pixel(ink, centre, at);
-    add_pixel(ink, centre + vec2(1, 0), at);
-    add_pixel(ink, centre + vec2(-1, 1), at);
-    add_pixel(ink, centre + vec2(0, 1), at);
+    add_pixel(ink, center + vec2(-1, -1), at);
+    add_pixel(ink, center + vec2(0, -1), at);
+    add_pixel(ink, center + vec2(1, -1), at);
+    add_pixel(ink, center + vec2(-1, 0), at);
+    add_pixel(ink, center, at);
+    add_pixel(ink, center + vec2(1, 0), at);
+    add_pixel(ink, center + vec2(-1, 1), at);
+    add_pixel(ink, center + vec2(0, 1), at);
 #ifdef SMOOTH
     // Lines leave their cracks by up to half a pixel.
-    add_pixel(ink, centre + vec2(1, 1), at);
-    add_pixel(ink, centre + vec2(-1, -2), at);
-    add_pixel(ink, centre + vec2(0, -2), at);
-    add_pixel(ink, centre + vec2(1, -2), at);
-    add_pixel(ink, centre + vec2(-2, -1), at);
-    add_pixel(ink, centre + vec2(-2, 0), at);
-    add_pixel(ink, centre + vec2(-2, 1), at);
+    add_pixel(ink, center + vec2(1, 1), at);
+    add_pixel(ink, center + vec2(-1, -2), at);
+    add_pixel(ink, center + vec2(0, -2), at);
+    add_pixel(ink, center + vec2(1, -2), at);
+    add_pixel(ink, center + vec2(-2, -1), at);
+    add_pixel(ink, center + vec2(-2, 0), at);
+    add_pixel(ink, center + vec2(-2, 1), at);
 #endif
 #else ifdef COLUMNS
     for (var x = -g.reach - 1; x <= g.reach; x++) {
-        add_column(ink, vec2(centre.x + x, clamp(centre.y, 0, g.rect.w - 1)), at);
+        add_column(ink, vec2(center.x + x, clamp(center.y, 0, g.rect.w - 1)), at);
     }
 #else
     for (var y = -g.reach; y <= g.reach; y++) {
         for (var x = -g.reach; x <= g.reach; x++) {
-            add_pixel(ink, centre + vec2(x, y), at);
+            add_pixel(ink, center + vec2(x, y), at);
         }
     }
 #endif
@@ -396,8 +396,8 @@ fn crack_beside(p: vec2<i32>, south: bool) -> u32 {
 
 // Adds the line along the side `towards` of a pixel that is `away` pixels from this one, if it
 // belongs to that pixel and is wide enough.
-fn add_side(ink: ptr<function, Ink>, centre: vec2<i32>, towards: vec2<i32>, away: i32) {
-    let pixel = centre + away * towards;
+fn add_side(ink: ptr<function, Ink>, center: vec2<i32>, towards: vec2<i32>, away: i32) {
+    let pixel = center + away * towards;
     let south = towards.y != 0;
     let packed = crack_beside(pixel + min(towards, vec2(0)), south);
     let is_own = all(owner_step(packed, south) == max(-towards, vec2(0)));
@@ -407,12 +407,12 @@ fn add_side(ink: ptr<function, Ink>, centre: vec2<i32>, towards: vec2<i32>, away
 
 // Adds the lines along the four sides of a pixel, and those that are wider than the pixels
 // between.
-fn add_sides(ink: ptr<function, Ink>, centre: vec2<i32>) {
+fn add_sides(ink: ptr<function, Ink>, center: vec2<i32>) {
     for (var away = 0; away < line_pass.grid.reach; away++) {
-        add_side(ink, centre, vec2(1, 0), away);
-        add_side(ink, centre, vec2(-1, 0), away);
-        add_side(ink, centre, vec2(0, 1), away);
-        add_side(ink, centre, vec2(0, -1), away);
+        add_side(ink, center, vec2(1, 0), away);
+        add_side(ink, center, vec2(-1, 0), away);
+        add_side(ink, center, vec2(0, 1), away);
+        add_side(ink, center, vec2(0, -1), away);
     }
 }
 #endif
@@ -448,15 +448,15 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     place = boiled(line_pass.boil, place);
 #endif
     let at = place * g.from_viewport.xy + g.from_viewport.zw;
-    let centre = vec2<i32>(floor(at));
+    let center = vec2<i32>(floor(at));
     var ink: Ink;
     ink.distances = vec2(1e6);
 #ifdef HARD
-    add_sides(&ink, centre);
+    add_sides(&ink, center);
 #else
-    search(&ink, centre, at);
+    search(&ink, center, at);
 #endif
-    // Between the middles of two neighbouring cracks, a line runs straight. Discs around
+    // Between the middles of two neighboring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
     let continues = ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45;
     if ink.distances.x < 1e5 {
@@ -478,7 +478,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         }
 #endif
     }
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     // The owner of a line in a gap is that of the crack that it continues.
     ink.owner += source_of(g, ink.crack).xy - ink.crack.xy;
 #endif

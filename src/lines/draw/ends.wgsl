@@ -1,7 +1,7 @@
 // Finds the loose ends of lines, in the cells that walk.wgsl has listed, and lists the strokes
 // that extend them. Closed lines have no end, nor have lines that meet others or leave the grid.
 
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
 #import bevy_comics::lines::gaps::source_of
 #endif
 #import bevy_comics::lines::chain::{first_corner, last_corner, next_crack, other_corner}
@@ -88,7 +88,7 @@ fn extend(g: Grid, crack: vec3<i32>, corner: vec2<i32>) {
 
 fn list_stroke(g: Grid, crack: vec3<i32>, packed: u32, segment: vec4<f32>) {
     var source = crack;
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     source = source_of(g, crack);
 #endif
     let south = crack.z == 1;

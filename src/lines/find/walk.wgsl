@@ -70,7 +70,7 @@ fn list_cell(cell: vec2<u32>) {
 }
 #endif
 
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
 // These rows of a block, and those in which close_gaps.wgsl may add cracks.
 fn with_gaps(rows: u32) -> u32 {
     var all = rows;
@@ -132,7 +132,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
 #endif
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     rows = with_gaps(rows);
 #endif
 #ifdef JUMPS

@@ -78,7 +78,7 @@ impl LinePass {
             Self::Draw if key.contains(LineKey::COLUMNS) => {
                 let blocks = key.contains(LineKey::BLOCKS).then(|| uint(12));
                 let planes = key
-                    .contains(LineKey::BRIDGED)
+                    .contains(LineKey::CLOSED_GAPS)
                     .then(|| planes_entry(fragment));
                 let entries = [uint(13)].into_iter().chain(blocks);
                 entries.chain(planes).chain(ids).collect()

@@ -67,7 +67,7 @@ bitflags! {
         /// Creases and object edges may be parts of silhouettes.
         const RIMS = 1 << 28;
         /// Gaps in lines are closed.
-        const BRIDGED = 1 << 29;
+        const CLOSED_GAPS = 1 << 29;
         /// Lines run straight through the steps of pixels; creases where their two sides meet.
         const SMOOTH = 1 << 30;
         const FOLDS = 1 << 31;
@@ -105,7 +105,7 @@ bitflags! {
         /// Tiles are drawn: the device has compute shaders. Otherwise all pixels are.
         const BLOCKS = 1 << 50;
         /// How cracks near a pixel are searched, see [`Search`].
-        const NEIGHBOURS = 1 << 51;
+        const NEIGHBORS = 1 << 51;
         const COLUMNS = 1 << 52;
         /// The color of lines depends on the surface that they belong to, or on the sign of creases;
         /// and whether they take the color a pixel inside of it, because its rim is mixed with others.
@@ -184,7 +184,7 @@ impl LineKey {
         .union(Self::OVERSHOOTS)
         .union(Self::LEDGES)
         .union(Self::RIMS)
-        .union(Self::BRIDGED)
+        .union(Self::CLOSED_GAPS)
         .union(Self::SMOOTH)
         .union(Self::BLOCKS);
 
@@ -228,10 +228,10 @@ impl LineKey {
             (lines.overshoots(), Self::OVERSHOOTS),
             (lines.joins(), Self::LEDGES),
             (rims && lines.links(), Self::RIMS),
-            (lines.gap_closing > 0, Self::BRIDGED),
+            (lines.gap_closing > 0, Self::CLOSED_GAPS),
             (lines.is_smooth(), Self::SMOOTH),
             (true, Self::BLOCKS),
-            (search == Search::Neighbors, Self::NEIGHBOURS),
+            (search == Search::Neighbors, Self::NEIGHBORS),
             (search == Search::Columns, Self::COLUMNS),
             (request.needs_owners(), Self::SURFACE),
             (request.needs_owners() && multisampled, Self::INWARD),
@@ -301,7 +301,7 @@ impl LineKey {
     /// The part that the search for blocks with cracks depends on.
     pub fn for_walk(self) -> Self {
         let map = Self::VISIBLE_RANGE | Self::from_bits_retain(u128::MAX << MAP_FLAGS);
-        self & (Self::FOUND | Self::CRACKS | Self::BRIDGED | Self::JUMPS)
+        self & (Self::FOUND | Self::CRACKS | Self::CLOSED_GAPS | Self::JUMPS)
             | Self::DEPTH
             | Self::BOUNDS
             | self.when(Self::SILHOUETTES | Self::LEDGES, Self::EXCESS)
@@ -355,7 +355,7 @@ impl LineKey {
 
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
-        let lines = Self::LEDGES | Self::RIMS | Self::BRIDGED | Self::SMOOTH | Self::FOLDS;
+        let lines = Self::LEDGES | Self::RIMS | Self::CLOSED_GAPS | Self::SMOOTH | Self::FOLDS;
         let on_map = Self::PERSPECTIVE_WEIGHT | Self::IN_LAYERS | Self::SIMPLIFIED_CREASES;
         let reads = Self::DEPTH | Self::EDITS | self & Self::OBLIQUE;
         let by_objects = Self::OUTER_WEIGHT | Self::WIDTH_BY_OBJECTS;
@@ -383,7 +383,7 @@ impl LineKey {
         Self::BLOCKS
             | Self::SMOOTH
             | self & Self::VARIED
-            | self.when(Self::OWNERS, self & Self::BRIDGED)
+            | self.when(Self::OWNERS, self & Self::CLOSED_GAPS)
     }
 
     /// What drawing and strokes have of the colors of lines and their sheet.
@@ -407,8 +407,8 @@ impl LineKey {
     pub fn for_draw(self) -> Self {
         let searched = Self::COMPLETED | Self::SMOOTH | Self::VARIED;
         let drawn = self.for_ink()
-            | self & (Self::NEIGHBOURS | Self::COLUMNS | Self::BLOCKS | Self::OWNERS | Self::HARD)
-            | self.when(Self::OWNERS, self & Self::BRIDGED);
+            | self & (Self::NEIGHBORS | Self::COLUMNS | Self::BLOCKS | Self::OWNERS | Self::HARD)
+            | self.when(Self::OWNERS, self & Self::CLOSED_GAPS);
         if self.contains(Self::COLUMNS) {
             drawn
         } else {

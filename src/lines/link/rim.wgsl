@@ -5,7 +5,7 @@
 #import bevy_comics::depth::view::texel_depth
 #import bevy_comics::lines::chain::{first_corner, last_corner, next_crack, other_corner}
 #import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
 #import bevy_comics::lines::gaps::source_of
 #endif
 #import bevy_comics::lines::pass::line_pass
@@ -45,7 +45,7 @@ fn with_rim(crack: vec3<i32>, packed: u32) -> u32 {
     let g = line_pass.grid;
     let s = line_pass.settings;
     var source = crack;
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     source = source_of(g, crack);
 #endif
     let here = g.rect.xy + source.xy;

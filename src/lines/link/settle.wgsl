@@ -20,7 +20,7 @@
 #ifdef FOLDS
 #import bevy_comics::lines::fold::{Fold, fold_bend}
 #endif
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
 #import bevy_comics::lines::gaps::source_of
 #endif
 #ifdef RIMS
@@ -248,7 +248,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
     let w = line_pass.weight;
     var source = crack;
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     source = source_of(g, crack);
 #endif
     let here = g.rect.xy + source.xy;
@@ -400,7 +400,7 @@ fn settle_cell(g: Grid, cell: vec2<i32>) {
     east |= cell_bits(g, LEDGE_EAST, cell);
     south |= cell_bits(g, LEDGE_SOUTH, cell);
 #endif
-#ifdef BRIDGED
+#ifdef CLOSED_GAPS
     east |= linked_east;
     south |= linked_south;
 #endif

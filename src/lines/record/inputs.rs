@@ -316,7 +316,7 @@ impl Inputs<'_> {
         if let (Some(_), CrackStore::Buffers(buffers)) = (&cracks.columns, &cracks.store) {
             entries.push(texture_entry(12, &self.tiles()?.blocks));
             entries.extend(
-                key.contains(LineKey::BRIDGED)
+                key.contains(LineKey::CLOSED_GAPS)
                     .then(|| buffers.planes_entry(copies)),
             );
         }

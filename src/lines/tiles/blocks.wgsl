@@ -22,7 +22,7 @@ fn block_rows(top: i32, first: i32, last: i32) -> u32 {
 
 // The rows from `first` to `last` of a block that may have cracks or jumps. `block`: its
 // column and row.
-fn marked_rows(block: vec2<i32>, first: i32, last: i32) -> u32 {
+fn crack_rows(block: vec2<i32>, first: i32, last: i32) -> u32 {
     return textureLoad(block_texture, block, 0).r & block_rows(block.y * BLOCK_HEIGHT, first, last);
 }
 

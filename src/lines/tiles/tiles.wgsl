@@ -2,7 +2,7 @@
 // in clip space. Pixels of other tiles cost nothing. Layers of the dispatch are lists.
 
 #import bevy_comics::lines::blocks::{
-    BLOCK_HEIGHT, BLOCK_WIDTH, TILE, inked_by, marked_rows, searched_by, tile_rectangle,
+    BLOCK_HEIGHT, BLOCK_WIDTH, TILE, crack_rows, inked_by, searched_by, tile_rectangle,
 }
 #import bevy_comics::lines::pass::line_pass
 
@@ -25,7 +25,7 @@ fn has_cracks(low: vec2<i32>, high: vec2<i32>, size: vec2<i32>) -> bool {
     var rows = 0u;
     for (var y = from_pixel.y / BLOCK_HEIGHT; y <= to_pixel.y / BLOCK_HEIGHT; y++) {
         for (var x = from_pixel.x / BLOCK_WIDTH; x <= to_pixel.x / BLOCK_WIDTH; x++) {
-            rows |= marked_rows(vec2(x, y), from_pixel.y, to_pixel.y);
+            rows |= crack_rows(vec2(x, y), from_pixel.y, to_pixel.y);
         }
     }
     return rows != 0u;

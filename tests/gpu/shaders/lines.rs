@@ -77,7 +77,7 @@ fn walking() -> Vec<Variant> {
         "| OBLIQUE",
         "| SKY_BEYOND",
         "| SAME_SIZE",
-        "| BRIDGED",
+        "| CLOSED_GAPS",
         "| JUMPS MAP_FLAGS=0 | JUMPS MAP_FLAGS=1 | JUMPS MAP_FLAGS=2 | JUMPS MAP_FLAGS=3",
         "| VISIBLE_RANGE",
     ];
@@ -89,7 +89,7 @@ fn walked(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let lines = has_any(&names, &["SILHOUETTES", "CREASES", "OBJECT_EDGES"]);
     names.retain(|name| match *name {
         "BENDS" => false,
-        "BRIDGED" => lines && !highlights,
+        "CLOSED_GAPS" => lines && !highlights,
         "JUMPS" => !highlights,
         "VISIBLE_RANGE" => jumps && !highlights,
         _ if name.starts_with("MAP_FLAGS") => !highlights,
@@ -132,7 +132,7 @@ fn completing() -> Vec<Variant> {
         ),
         pairs(
             "lines/draw/ends.wgsl",
-            &["BLOCKS SMOOTH", "| VARIED", "| BRIDGED"],
+            &["BLOCKS SMOOTH", "| VARIED", "| CLOSED_GAPS"],
             |names| names,
         ),
     ]
@@ -144,7 +144,7 @@ fn settling() -> Vec<Variant> {
     const LISTS: &[&str] = &[
         "| SMOOTH | SMOOTH FOLDS",
         "| OBLIQUE",
-        "| BRIDGED",
+        "| CLOSED_GAPS",
         "| LEDGES",
         "| RIMS",
         "| KIND_WEIGHT | KIND_WEIGHT OBJECT_IDS",
@@ -206,12 +206,12 @@ fn drawing() -> Vec<Variant> {
         "| STREAKS",
     ];
     const LISTS: &[&str] = &[
-        "| NEIGHBOURS | COLUMNS | HARD",
+        "| NEIGHBORS | COLUMNS | HARD",
         "| BLOCKS | BLOCKS COMPLETED | BLOCKS COMPLETED SMOOTH",
         "| VARIED",
         "| OBJECT_STYLES",
         "| SURFACE | SURFACE INWARD | SURFACE EDGE_STYLES",
-        "| BRIDGED",
+        "| CLOSED_GAPS",
         "| BOIL",
         "| INK_BLEED",
         "| STREAKS",
@@ -252,7 +252,7 @@ fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
         "COMPLETED" => !columns,
         "SMOOTH" => !columns && !hard,
         "VARIED" => completed && !columns,
-        "BRIDGED" => owners && blocks,
+        "CLOSED_GAPS" => owners && blocks,
         _ => true,
     });
     push_if(owners, &mut names, "OWNERS");
