@@ -18,9 +18,9 @@
     ambient::{AxisLight, TwoTones, two_tones},
 }
 
-// Light of the surroundings at a surface that faces along `normal`, without ambient light
-// and lightmaps. Materials of meshes with a lightmap are compiled without surroundings.
-fn surroundings(
+// Light of the environment at a surface that faces along `normal`, without ambient light
+// and lightmaps. Materials of meshes with a lightmap are compiled without it.
+fn environment_light(
     s: Surface,
     normal: vec3<f32>,
     ranges: ptr<function, ClusterableObjectIndexRanges>,
@@ -40,7 +40,7 @@ fn surroundings(
 #endif
 }
 
-// Light of the surroundings: `shade` everywhere, and `more` of it from one direction. The
+// Light of the environment: `shade` everywhere, and `more` of it from one direction. The
 // more of `ToonLight::environment`, the more of it is in these two tones; the rest
 // changes with every normal, and is part of `shade`.
 fn light_around(
@@ -51,18 +51,18 @@ fn light_around(
     var tones = TwoTones(vec3(0.0), vec3(0.0), vec3(0.0, 1.0, 0.0));
     if settings.environment > 0.0 {
         var axes: AxisLight;
-        axes.right = surroundings(s, vec3(1.0, 0.0, 0.0), ranges);
-        axes.left = surroundings(s, vec3(-1.0, 0.0, 0.0), ranges);
-        axes.up = surroundings(s, vec3(0.0, 1.0, 0.0), ranges);
-        axes.down = surroundings(s, vec3(0.0, -1.0, 0.0), ranges);
-        axes.back = surroundings(s, vec3(0.0, 0.0, 1.0), ranges);
-        axes.front = surroundings(s, vec3(0.0, 0.0, -1.0), ranges);
+        axes.right = environment_light(s, vec3(1.0, 0.0, 0.0), ranges);
+        axes.left = environment_light(s, vec3(-1.0, 0.0, 0.0), ranges);
+        axes.up = environment_light(s, vec3(0.0, 1.0, 0.0), ranges);
+        axes.down = environment_light(s, vec3(0.0, -1.0, 0.0), ranges);
+        axes.back = environment_light(s, vec3(0.0, 0.0, 1.0), ranges);
+        axes.front = environment_light(s, vec3(0.0, 0.0, -1.0), ranges);
         tones = two_tones(axes);
         tones.shade *= settings.environment;
         tones.more *= settings.environment;
     }
     if settings.environment < 1.0 {
-        tones.shade += (1.0 - settings.environment) * surroundings(s, s.normal, ranges);
+        tones.shade += (1.0 - settings.environment) * environment_light(s, s.normal, ranges);
     }
     return tones;
 }

@@ -27,7 +27,7 @@ struct Stop {
 }
 
 struct Ramp {
-    // Exponent of the light in `Share`: 0 keeps nothing of its strength, 1 all.
+    // Exponent of the light in `LightFraction`: 0 keeps nothing of its strength, 1 all.
     keep_intensity: f32,
     // The last member, since a variant of the shader declares only what it reads of it.
     stops: array<Stop, STOPS>,

@@ -168,8 +168,8 @@ fn two_stops_per_light_are_the_light_without_a_ramp() {
     }
 }
 
-/// `Share` without the strength of the light: the exposure changes nothing, nor does a light
-/// that is divided in two.
+/// `LightFraction` without the strength of the light: the exposure changes nothing, nor does a
+/// light that is divided in two.
 #[test]
 fn fractions_do_not_depend_on_the_exposure() {
     let light = ToonLight {
