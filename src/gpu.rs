@@ -1,11 +1,11 @@
 //! Short forms of what the renderer takes as structs, and buffers that follow what changes.
 
 #[cfg(feature = "objects")]
-use std::ops::Range;
+use std::{num::NonZero, ops::Range};
 
 #[cfg(feature = "objects")]
 use bevy::render::{
-    render_resource::{RawBufferVec, RenderPassDepthStencilAttachment},
+    render_resource::{BufferBinding, RawBufferVec, RenderPassDepthStencilAttachment},
     renderer::RenderQueue,
 };
 use bevy::{
@@ -164,6 +164,16 @@ impl<const N: usize> Table<N> {
 
     pub fn buffer(&self) -> Option<&Buffer> {
         self.entries.buffer()
+    }
+
+    /// The entries alone: the buffer may be longer, and shaders read its length. `None` without any.
+    pub fn binding(&self) -> Option<BindingResource<'_>> {
+        let size = self.len() * size_of::<[u32; N]>();
+        Some(BindingResource::Buffer(BufferBinding {
+            buffer: self.buffer()?,
+            offset: 0,
+            size: Some(NonZero::new(size as u64)?),
+        }))
     }
 
     pub fn truncate(&mut self, len: usize) {

@@ -113,16 +113,14 @@ impl_sanitized!(OutlineStyle);
 impl OutlineStyle {
     fn uniform(self) -> ObjectStyleUniform {
         let style = self.sanitized();
-        let OutlineKinds {
-            silhouettes,
-            creases,
-            objects,
-        } = style.kinds;
+        let kinds = style.kinds;
         ObjectStyleUniform {
             color: linear_rgb(style.color.unwrap_or(Color::BLACK)),
             has_color: if style.color.is_some() { 1.0 } else { 0.0 },
             half_width: style.width.map_or(-1.0, |w| 0.5 * w),
-            kinds: u32::from(silhouettes) | u32::from(creases) << 1 | u32::from(objects) << 2,
+            kinds: u32::from(kinds.silhouettes)
+                | u32::from(kinds.creases) << 1
+                | u32::from(kinds.objects) << 2,
             opacity: style.opacity.unwrap_or(1.0),
             ..Default::default()
         }

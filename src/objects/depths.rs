@@ -1,7 +1,5 @@
 //! The depth of every object in the depth map, for effects that treat objects as a whole.
 
-use std::num::NonZero;
-
 use bevy::{
     asset::load_embedded_asset,
     camera::primitives::Aabb,
@@ -11,9 +9,9 @@ use bevy::{
     render::{
         Extract, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, BufferBinding,
-            BufferUsages, CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache,
-            ShaderStages, SpecializedComputePipeline, SpecializedComputePipelines, UniformBuffer,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BufferUsages,
+            CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            SpecializedComputePipeline, SpecializedComputePipelines, UniformBuffer,
             binding_types::{
                 storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer,
                 uniform_buffer_sized,
@@ -178,16 +176,6 @@ impl ObjectBounds {
             }
         }
         self.table = table;
-    }
-
-    /// The boxes of this frame: the buffer may be longer, and the shader reads its length.
-    fn binding(&self) -> Option<BindingResource<'_>> {
-        let size = 48 * self.table.len() as u64;
-        Some(BindingResource::Buffer(BufferBinding {
-            buffer: self.table.buffer()?,
-            offset: 0,
-            size: Some(NonZero::new(size)?),
-        }))
     }
 }
 
@@ -394,7 +382,7 @@ fn find_object_depths(
     let (Some(pipeline), Some(uniform), Some(objects), true) = (
         binder.cache.get_compute_pipeline(pass.pipeline),
         pass.uniform.binding(),
-        bounds.binding(),
+        bounds.table.binding(),
         keys.is_some() || !pass.reads_range(),
     ) else {
         ctx.command_encoder().clear_buffer(&table.table, 0, None);

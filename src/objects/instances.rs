@@ -5,7 +5,7 @@
 //! by the engine's pipeline for direct drawing, which writes each mesh to the place that its work
 //! item names.
 
-use std::{any::TypeId, num::NonZero};
+use std::any::TypeId;
 
 use bevy::{
     ecs::system::{Res, ResMut, StaticSystemParam, SystemParam, SystemParamItem},
@@ -13,11 +13,10 @@ use bevy::{
     platform::time::Instant,
     render::{
         batching::{
-            GetBatchData, GetFullBatchData,
-            gpu_preprocessing::{BatchedInstanceBuffers, PreprocessWorkItem},
+            GetBatchData, GetFullBatchData, gpu_preprocessing::BatchedInstanceBuffers,
             no_gpu_preprocessing::BatchedInstanceBuffer,
         },
-        render_resource::{BindGroup, BindingResource, Buffer, BufferBinding, PipelineCache},
+        render_resource::{BindGroup, Buffer, PipelineCache},
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewUniformOffset, ViewUniforms},
     },
@@ -167,22 +166,12 @@ pub(super) struct Expanding<'w> {
 impl Expanding<'_> {
     /// `None` if nothing is expanded on the GPU, or if the engine has no buffers.
     fn expansion(&self, view: &InstanceBuffers, binder: &Binder) -> Option<BindGroup> {
-        if view.work.len() == 0 {
-            return None;
-        }
         let engine = self.buffers.as_ref()?;
         let output = engine
             .phase_instance_buffers
             .get(&TypeId::of::<ObjectIdItem>())?;
         let current = engine.current_input_buffer.buffer().buffer()?;
         let previous = engine.previous_input_buffer.buffer()?;
-        let size = view.work.len() * size_of::<PreprocessWorkItem>();
-        // The shader reads the length of the array, and a buffer may be longer.
-        let work = BindingResource::Buffer(BufferBinding {
-            buffer: view.work.buffer()?,
-            offset: 0,
-            size: Some(NonZero::new(size as u64)?),
-        });
         let pipeline = &self.pipelines.as_ref()?.direct_preprocess;
         Some(binder.group(
             "comics_object_instances",
@@ -191,7 +180,7 @@ impl Expanding<'_> {
                 entry(0, self.views.uniforms.binding()?),
                 entry(3, current.as_entire_binding()),
                 entry(4, previous.as_entire_binding()),
-                entry(5, work),
+                entry(5, view.work.binding()?),
                 entry(6, output.data_buffer.buffer()?.as_entire_binding()),
             ],
         ))

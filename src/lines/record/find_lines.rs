@@ -111,29 +111,22 @@ pub(crate) fn find_lines(
         }
         Err(reason) => StageOutcome::Skipped(reason),
     };
-    let resolved = if request.samples > 1 {
-        outcome
+    let unsearched = if passes.key.intersects(LineKey::CRACKS | LineKey::JUMPS) {
+        SkipReason::NoComputeShaders
     } else {
-        StageOutcome::Skipped(SkipReason::SingleSampled)
+        SkipReason::NoSuchLines
     };
-    let searched = if passes.search.is_some() {
-        outcome
-    } else if passes.key.intersects(LineKey::CRACKS | LineKey::JUMPS) {
-        StageOutcome::Skipped(SkipReason::NoComputeShaders)
-    } else {
-        StageOutcome::Skipped(SkipReason::NoSuchLines)
-    };
-    let inked = if passes.has_ink() {
-        outcome
-    } else {
-        StageOutcome::Skipped(SkipReason::NoSuchLines)
-    };
-    for (stage, outcome) in [
+    let resolved = (request.samples > 1, SkipReason::SingleSampled);
+    let searched = (passes.search.is_some(), unsearched);
+    let inked = (passes.has_ink(), SkipReason::NoSuchLines);
+    for (stage, (is_needed, reason)) in [
         (ComicsStage::ResolveSamples, resolved),
         (ComicsStage::SearchTiles, searched),
         (ComicsStage::FindLines, inked),
         (ComicsStage::DrawLines, inked),
     ] {
+        let skipped = StageOutcome::Skipped(reason);
+        let outcome = if is_needed { outcome } else { skipped };
         ledger.set(request.camera, stage, outcome);
     }
 }

@@ -153,14 +153,9 @@ pub(crate) fn draw_highlights<const LATE: bool>(
         return;
     }
     let group = binder.group("comics_draw_highlights", &HighlightKey::layout(), &entries);
-    let tiles = if highlights.key.tiled {
-        lines.tiles()
-    } else {
-        None
-    };
-    if highlights.key.tiled != tiles.is_some()
-        || highlights.key.tiled != passes.are_tiles_complete()
-    {
+    let tiled = highlights.key.tiled;
+    let tiles = lines.tiles().filter(|_| tiled);
+    if tiled != tiles.is_some() || tiled != passes.are_tiles_complete() {
         return;
     }
     let mut pass = ctx

@@ -86,34 +86,22 @@ impl TileLists {
                 let buffer =
                     |label, size, usage| buffer(device, label, size, usage | BufferUsages::STORAGE);
                 let size = RECTANGLE * u64::from(LISTS * room);
+                let stored = BufferUsages::empty();
                 let drawn = BufferUsages::INDIRECT | BufferUsages::COPY_DST;
                 Self {
                     arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
                     tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
-                    frames_left: buffer(
-                        "comics_tile_frames",
-                        4 * u64::from(room),
-                        BufferUsages::empty(),
-                    ),
+                    frames_left: buffer("comics_tile_frames", 4 * u64::from(room), stored),
                     size: request.size,
                     room,
                     cell_counts: buffer("comics_cell_counts", ARGUMENTS, drawn),
-                    cells: buffer(
-                        "comics_cells",
-                        CELLS * u64::from(room),
-                        BufferUsages::empty(),
-                    ),
+                    cells: buffer("comics_cells", CELLS * u64::from(room), stored),
                 }
             });
         let none: Vec<u8> = [0u32, 1, 1, 0].map(u32::to_le_bytes).concat();
         queue.write_buffer(&lists.cell_counts, 0, &none);
-        let empty: [[u32; 4]; LISTS as usize] = [[4, 0, 0, 0]; LISTS as usize];
-        let bytes: Vec<u8> = empty
-            .as_flattened()
-            .iter()
-            .flat_map(|n| n.to_le_bytes())
-            .collect();
-        queue.write_buffer(&lists.arguments, 0, &bytes);
+        let empty: Vec<u8> = [4u32, 0, 0, 0].map(u32::to_le_bytes).concat();
+        queue.write_buffer(&lists.arguments, 0, &empty.repeat(LISTS as usize));
         lists
     }
 
