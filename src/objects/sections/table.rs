@@ -168,11 +168,7 @@ impl SectionTables {
             let words = self.divisions.get(key)?.words.as_ref()?;
             let shift = shift.map_or(0, |shift| u32::from(shift) + 1);
             // Beyond 64 million triangles, meshes have no sections.
-            let found = if key.origin == Origin::Found {
-                FOUND
-            } else {
-                0
-            };
+            let found = FOUND * u32::from(key.origin == Origin::Found);
             (words.end < 1 << 24).then_some(words.start as u32 | shift << 24 | found)
         });
         self.starts.set(entity, start);
