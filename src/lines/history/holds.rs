@@ -51,22 +51,13 @@ impl LineHolds {
     ) -> Self {
         let size = UVec2::new(request.rect.z, request.rect.w);
         let (cuts, settings) = (request.cuts, request.settings);
-        let Some(before) = before else {
-            return Self {
-                frames: [Frame::new(device, size), Frame::new(device, size)],
-                cuts,
-                settings,
-                is_new: true,
-            };
-        };
-        let [past, unused] = before.frames;
-        let now = if unused.size == size {
-            unused
-        } else {
-            Frame::new(device, size)
-        };
+        let frame = || Frame::new(device, size);
         // Other settings are seen at once.
-        let same = before.cuts == cuts && before.settings == settings;
+        let same = |before: &Self| before.cuts == cuts && before.settings == settings;
+        let same = before.as_ref().is_some_and(same);
+        let frames = before.map_or_else(|| [frame(), frame()], |before| before.frames);
+        let [past, unused] = frames;
+        let now = if unused.size == size { unused } else { frame() };
         Self {
             frames: [now, past],
             cuts,

@@ -52,26 +52,22 @@ impl LineHistory {
         device: &RenderDevice,
         (request, size, settings): (&HistoryRequest, UVec2, &Outlines),
     ) -> Self {
-        if let Some(mut before) = before.filter(|before| before.size == size) {
-            before.frames.swap(0, 1);
-            // Other settings are seen at once.
-            let same = before.cuts == request.cuts && before.settings == *settings;
-            before.is_new = !kept || !same;
-            before.cuts = request.cuts;
-            before.settings = *settings;
-            return before;
-        }
         let [ink, depth] = HISTORY_FORMATS;
         let frame = || Frame {
             ink: texture(device, "comics_history_ink", size, ink),
             depth: texture(device, "comics_history_depth", size, depth),
         };
+        let before = before.filter(|before| before.size == size);
+        // Other settings are seen at once.
+        let same = |before: &Self| before.cuts == request.cuts && before.settings == *settings;
+        let same = before.as_ref().is_some_and(same);
+        let [past, now] = before.map_or_else(|| [frame(), frame()], |before| before.frames);
         Self {
             size,
-            frames: [frame(), frame()],
+            frames: [now, past],
             cuts: request.cuts,
             settings: *settings,
-            is_new: true,
+            is_new: !kept || !same,
         }
     }
 
