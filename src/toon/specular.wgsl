@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::toon::specular
 
-// The highlights of all lights. The brightest light may draw a sign instead, see `StylizedHighlight`.
+// The highlights of all lights. The brightest light may draw a shape instead, see `StylizedHighlight`.
 
 #import bevy_comics::toon::{
     bindings::toon,

@@ -1,4 +1,4 @@
-//! Highlights as signs.
+//! Highlights in stylized shapes.
 
 use bevy::{prelude::*, render::render_resource::ShaderType};
 use serde::{Deserialize, Serialize};

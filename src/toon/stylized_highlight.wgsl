@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::toon::stylized_highlight
 
-// Highlights as signs: pure functions (Anjyo and Hiramitsu 2003). Shapes are drawn in the plane of
+// Highlights in shapes: pure functions (Anjyo and Hiramitsu 2003). Shapes are drawn in the plane of
 // half vectors: a place in it is how far the normal leans from the half vector, which is the tangent
 // of the angle between them. The plain highlight is a disc around the origin.
 
@@ -130,13 +130,13 @@ fn turned(g: StylizedHighlight, v: vec2<f32>) -> vec2<f32> {
     return vec2(g.turn.x * v.x + g.turn.y * v.y, g.turn.x * v.y - g.turn.y * v.x);
 }
 
-// Where the center of the sign is: at most 63 degrees from the plain highlight.
+// Where the center of the shape is: at most 63 degrees from the plain highlight.
 fn center_of(g: StylizedHighlight, radius: f32) -> vec2<f32> {
     let center = g.offset * radius;
     return center * min(1.0, 2.0 / max(length(center), 1e-6));
 }
 
-// Distance of a place in the plane of half vectors from the border of the sign, in units of its
+// Distance of a place in the plane of half vectors from the border of the shape, in units of its
 // radius. `radius` is that of the plain highlight.
 fn sign_distance(g: StylizedHighlight, radius: f32, place: vec2<f32>) -> f32 {
     let y = turned(g, place - center_of(g, radius)) / (g.scale * g.size * radius);
@@ -168,7 +168,7 @@ fn faithful_distance(g: StylizedHighlight, frame: Frame, radius: f32, normal: ve
     return length(place_of(frame, normal, h)) / (g.size * radius) - 1.0;
 }
 
-// Distance of a surface from the border of the sign.
+// Distance of a surface from the border of the shape.
 fn stylized_highlight_distance(g: StylizedHighlight, frame: Frame, radius: f32, normal: vec3<f32>, half_vector: vec3<f32>) -> f32 {
     if shape_of(g) == FAITHFUL {
         return faithful_distance(g, frame, radius, normal, half_vector);
@@ -176,8 +176,8 @@ fn stylized_highlight_distance(g: StylizedHighlight, frame: Frame, radius: f32, 
     return sign_distance(g, radius, place_of(frame, normal, half_vector));
 }
 
-// How much of a pixel the sign covers, from the distance at the pixel and at two neighbors. A
-// sign that is smaller than a pixel fades.
+// How much of a pixel the shape covers, from the distance at the pixel and at two neighbors. A
+// shape that is smaller than a pixel fades.
 fn stylized_highlight_coverage(g: StylizedHighlight, here: f32, beside: f32, below: f32) -> f32 {
     let pixel = max(length(vec2(beside - here, below - here)), 1e-5);
     let small = min(2.0 / pixel, 1.0);

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::toon::stylized_highlight_light
 
-// The sign that a surface shows of a light.
+// The stylized highlight that a surface shows of a light.
 
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_comics::toon::{
@@ -29,7 +29,7 @@ fn swing(to: vec3<f32>, movement: vec3<f32>, per_distance: f32) -> vec3<f32> {
     return (to * dot(to, movement) - movement) * per_distance;
 }
 
-// Distance of the surface from the border of the sign, after a movement by `movement` and a turn
+// Distance of the surface from the border of the shape, after a movement by `movement` and a turn
 // of the normal by `turn`.
 fn distance_at(
     s: Surface,
@@ -47,7 +47,7 @@ fn distance_at(
     return stylized_highlight_distance(toon.stylized_highlight, frame, radius, normal, half_vector);
 }
 
-// Strength of the sign, without shadows.
+// Strength of the highlight, without shadows.
 fn sign_of(s: Surface, source: Source) -> f32 {
     let radius = stylized_highlight_radius(toon.light.highlight_edge, s.roughness);
     let polish = max(1.0 - 1.4 * s.roughness, 0.0);
