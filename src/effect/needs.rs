@@ -62,7 +62,7 @@ bitflags! {
         /// a pass. Without compute shaders, and with
         /// [`ReductionMethod::PingPong`](crate::depth::ReductionMethod::PingPong), there are none.
         const DEPTH_BORDERS = 1 << 12;
-        /// The place of every object in the depth map, by `bevy_comics::objects::object_depth`.
+        /// The depth of every object in the depth map, by `bevy_comics::objects::object_depth`.
         /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
         /// `OBJECT_DEPTHS` is not defined in WGSL.
         const OBJECT_DEPTHS = 1 << 13;

@@ -1,4 +1,4 @@
-//! How lines run straight through the steps of cracks. `cracks.rs` and `diagonals.rs` compare
+//! How lines run straight through the steps of cracks. `cracks.rs` and `wide_lines.rs` compare
 //! the bends of the GPU with the reference; these tests compare the reference with straight
 //! edges.
 
