@@ -316,7 +316,7 @@ impl Headless {
         validation::check();
     }
 
-    fn in_render_world<R: Resource>(&self) -> Option<&R> {
+    pub(crate) fn in_render_world<R: Resource>(&self) -> Option<&R> {
         self.app.get_sub_app(RenderApp)?.world().get_resource()
     }
 

@@ -5,7 +5,8 @@
 //! An app that a test changed otherwise is not used again: one with another number of systems, or
 //! in whose main world other resources were added or changed than those that change in every frame.
 //! Not seen: assets that are changed in place, and what the renderer keeps for as long as the app
-//! runs. Tests of those need an app of their own.
+//! runs. Tests of those need an app of their own. The renderer keeps pipelines, so an app with many of
+//! them is not used again either.
 
 use std::{
     collections::HashMap,
@@ -20,7 +21,7 @@ use bevy::{
     light::DirectionalLightShadowMap,
     pbr::DefaultOpaqueRendererMethod,
     prelude::*,
-    render::RenderApp,
+    render::{RenderApp, render_resource::PipelineCache},
     time::TimeUpdateStrategy,
 };
 use bevy_comics::{ReduceFlashing, cameras::WorldOrigin, objects::ObjectIdDepthTest};
@@ -29,6 +30,10 @@ use crate::{
     headless::{self, Headless, HeadlessOptions},
     validation,
 };
+
+/// The pipelines of an app from which on it is not used again: on a CPU, each may take a megabyte of
+/// compiled shaders.
+const MOST_PIPELINES: usize = 300;
 
 /// Apps with the same plugins and the default options, but for their targets.
 pub struct Pool {
@@ -105,7 +110,9 @@ pub(crate) fn give_back(headless: &mut Headless) {
     }
     restore(headless.app.world_mut());
     remove_spawned(headless, &baseline);
-    if !baseline.is_of(&headless.app) {
+    let pipelines = headless.in_render_world::<PipelineCache>();
+    let count = pipelines.map_or(0, |cache| cache.pipelines().count());
+    if count > MOST_PIPELINES || !baseline.is_of(&headless.app) {
         return;
     }
     let apps = std::mem::take(headless.app.sub_apps_mut());
