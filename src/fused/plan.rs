@@ -101,7 +101,11 @@ impl Plan {
             ..Self::default()
         };
         let asked = plan.collect(camera, shown, types);
-        if !(asked || plan.objects.highlights || plan.readback || plan.histogram || plan.view.is_some())
+        if !(asked
+            || plan.objects.highlights
+            || plan.readback
+            || plan.histogram
+            || plan.view.is_some())
         {
             return None;
         }

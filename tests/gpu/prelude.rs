@@ -52,8 +52,8 @@ pub use bevy_comics::{
     effect::{AnyEffect, EffectContext, EffectRegistry, EffectShader, EffectStage, Needs},
     effects::{
         ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle, Granularity,
-        HalftoneMode, HarmonyMode, HatchingAnchor, HatchingGround, HatchingMarks,
-        LayerBorders, PaintKernel, ScreenAnchor, ScreenSampling, ScreenShape, SpeedLineKind,
+        HalftoneMode, HarmonyMode, HatchingAnchor, HatchingGround, HatchingMarks, LayerBorders,
+        PaintKernel, ScreenAnchor, ScreenSampling, ScreenShape, SpeedLineKind,
     },
     lines::{Creases, LineBoil, LineColor, LineResponse, LineWeight, ObjectEdges, Silhouettes},
     objects::{DepthWrite, MeshSections, PatternAnchor},
