@@ -197,6 +197,7 @@ fn texels(line: &str) -> Option<[u32; 2]> {
         "return bend_words[",
         "planes[column_word(",
         "planes[row_word(",
+        "planes[corner_word(",
     ];
     let is_load = loads.iter().any(|load| line.contains(load));
     is_load.then_some([1, size])
