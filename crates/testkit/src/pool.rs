@@ -31,8 +31,7 @@ use crate::{
     validation,
 };
 
-/// The pipelines of an app from which on it is not used again: on a CPU, each may take a megabyte of
-/// compiled shaders.
+/// The most pipelines of an app that is used again: a driver on the CPU keeps compiled code of each.
 const MOST_PIPELINES: usize = 300;
 
 /// Apps with the same plugins and the default options, but for their targets.

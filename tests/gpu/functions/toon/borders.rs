@@ -7,8 +7,8 @@ use crate::prelude::*;
 
 const PIECES: usize = 128;
 
-/// Of two lights, the color, the direction and what arrives; a normal; what of the strength of the
-/// light is kept.
+/// For each of two lights: its color, its direction, and the fraction of it that arrives. Then the normal
+/// of the surface, and how much of the strength of the light is kept.
 type Row = [f32; 18];
 
 const LIT: [usize; 2] = [6, 13];
