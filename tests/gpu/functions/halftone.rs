@@ -11,7 +11,8 @@ use crate::prelude::*;
 const HALFTONE: &str =
     "#import bevy_comics::effects::halftone::{Halftone, page_screen, plate_cover}";
 
-/// Places up to 2000 pixels from the middle, tones with both ends, cells from 2 to 40 pixels.
+/// Places up to 2000 pixels from the middle, tones with both ends, cells from 2 to 40 pixels; and
+/// the middles of the smallest dots, from which ink bleeds.
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a
 /// thousandth there.
 #[test]
@@ -20,28 +21,36 @@ fn coverages_of_all_shapes_match_the_reference() {
         4 => 0.0f32..=1.0,
         1 => select(vec![0.0, 1.0, 0.5, 0.01, 0.995, 0.785, 0.786, 1.0 / 32.0, 31.0 / 32.0]),
     ];
-    let row = (
+    let anywhere = (
         (-2000.0f32..2000.0, -2000.0f32..2000.0),
         tone,
         2.0f32..40.0,
         -180.0f32..180.0,
         0u32..4,
         (0.0f32..3.0, -1.0f32..=1.0),
-    )
-        .prop_map(
-            |((x, y), tone, cell_size, degrees, plate, (ink_bleed, height))| {
-                [
-                    x,
-                    y,
-                    tone,
-                    cell_size,
-                    degrees,
-                    plate as f32,
-                    ink_bleed,
-                    height,
-                ]
-            },
-        );
+    );
+    let small_dots = (
+        (-0.5f32..0.5, -0.5f32..0.5),
+        0.02f32..0.1,
+        2.0f32..6.0,
+        -180.0f32..180.0,
+        0u32..4,
+        (2.0f32..3.0, prop_oneof![Just(1.0f32), 0.5f32..=1.0]),
+    );
+    let row = prop_oneof![3 => anywhere, 1 => small_dots].prop_map(
+        |((x, y), tone, cell_size, degrees, plate, (ink_bleed, height))| {
+            [
+                x,
+                y,
+                tone,
+                cell_size,
+                degrees,
+                plate as f32,
+                ink_bleed,
+                height,
+            ]
+        },
+    );
     for shape in SHAPES {
         let number = shape as u32;
         for_batches(row.clone(), |rows| {
