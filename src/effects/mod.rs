@@ -85,7 +85,7 @@ effects! {
     focus: Focus, FocusAt, FocusStyle;
     misregistration: Misregistration;
     halftone: Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape;
-    hatching: Hatching, HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource;
+    hatching: Hatching, HatchingAnchor, HatchingGround, HatchingKind, HatchingSource;
     black_flats: BlackFlats;
     contours: Contours, ContourOperator;
     outlines: Outlines;

@@ -47,6 +47,7 @@ pub(super) const STYLE: Renamed = &[
     ("hatching", "near", "at_near"),
     ("hatching", "far", "at_far"),
     ("hatching", "calm", "simplify_small"),
+    ("hatching", "marks", "kind"),
     ("contours", "form", "equations"),
     ("outlines", "continuity", "hysteresis"),
     ("outlines", "continuity_level", "hysteresis_ratio"),
@@ -79,6 +80,7 @@ pub(crate) const SHADING: Renamed = &[
     ("hatching", "near", "at_near"),
     ("hatching", "far", "at_far"),
     ("hatching", "calm", "simplify_small"),
+    ("hatching", "marks", "kind"),
     ("light", "glint", "stylized_highlight"),
 ];
 
@@ -293,7 +295,7 @@ mod tests {
     color_harmony: (curve: Quadratic, form: Faithful),
     planes: (near: (saturation: 0.5), near_end: 0.125),
     outlines: (specks: 3, silhouettes: (form: Faithful), color: Ink, weight: (nib: 0.5)),
-    hatching: (calm: 0.5),
+    hatching: (calm: 0.5, marks: Dots),
 )
 "##;
 
@@ -328,6 +330,7 @@ mod tests {
             "rename `near_end` to `foreground_end` in `planes`",
             "rename `Quadratic` to `SquareRoot` in `color_harmony`",
             "rename `nib` to `nib_roundness` in `outlines`",
+            "rename `marks` to `kind` in `hatching`",
         ] {
             assert!(advice.contains(expected), "{advice}");
         }
@@ -379,12 +382,14 @@ mod tests {
     #[test]
     #[cfg(feature = "toon")]
     fn the_innermost_entry_decides() {
-        let text = "(version: 1, light: (hatching: (near: 0.875, calm: 1), form: (near: 2)))";
+        let text = "(version: 1, light: (hatching: (near: 0.875, calm: 1, marks: Dots), \
+                    form: (near: 2)))";
         let light = crate::toon::ToonShading::from_ron(text)
             .expect("readable")
             .light;
         let hatching = light.hatching.expect("strokes");
         assert_eq!((hatching.at_near, hatching.simplify_small), (0.875, 1.0));
+        assert_eq!(hatching.kind, crate::effects::HatchingKind::Dots);
         assert_eq!(light.proxy.expect("a proxy").from, 2.0);
     }
 }

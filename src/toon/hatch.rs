@@ -5,7 +5,7 @@ use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
 use super::ToonLight;
 use crate::{
     effect::{Effect, Strokes},
-    effects::{Hatching, HatchingAnchor, HatchingMarks},
+    effects::{Hatching, HatchingAnchor, HatchingKind},
     settings::clamp_or_default,
 };
 
@@ -44,8 +44,8 @@ impl From<&ToonLight> for HatchUniform {
 /// What strokes are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum HatchKey {
-    Page(HatchingMarks),
-    Rest(HatchingMarks),
+    Page(HatchingKind),
+    Rest(HatchingKind),
     ArtMap,
 }
 
@@ -57,8 +57,8 @@ impl HatchKey {
             return Some(Self::ArtMap);
         }
         Some(match hatching.anchor {
-            HatchingAnchor::Page => Self::Page(hatching.marks),
-            HatchingAnchor::Object => Self::Rest(hatching.marks),
+            HatchingAnchor::Page => Self::Page(hatching.kind),
+            HatchingAnchor::Object => Self::Rest(hatching.kind),
         })
     }
 
@@ -85,7 +85,7 @@ impl HatchKey {
                     all.push("NO_TEXTURE_LEVELS".into());
                 }
             }
-            Self::Page(HatchingMarks::Dots) | Self::Rest(HatchingMarks::Dots) => {
+            Self::Page(HatchingKind::Dots) | Self::Rest(HatchingKind::Dots) => {
                 all.push("HATCH_DOTS".into());
             }
             _ => {}

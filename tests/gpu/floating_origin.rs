@@ -45,9 +45,9 @@ fn assert_stays(small: &mut Small, style: ComicStyle) {
 #[test]
 fn strokes_and_dots_stay_on_surfaces_when_the_origin_moves() {
     let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
-    for marks in [HatchingMarks::Strokes, HatchingMarks::Dots] {
+    for kind in [HatchingKind::Strokes, HatchingKind::Dots] {
         let hatching = Hatching {
-            marks,
+            kind,
             wobble: 1.0,
             ..default()
         };
@@ -86,13 +86,13 @@ fn assert_marks_are_on_planes(cases: &[(&str, f32)]) {
     let mut small = empty();
     let origin = DVec3::new(1e7 + 0.123, 3e6, -2e7);
     small.world().insert_resource(WorldOrigin(origin));
-    let [strokes, dots] = [HatchingMarks::Strokes, HatchingMarks::Dots].map(|marks| Hatching {
+    let [strokes, dots] = [HatchingKind::Strokes, HatchingKind::Dots].map(|kind| Hatching {
         layers: 3,
         layer_darkness: 0.15,
         breaks: 0.6,
         wobble: 0.3,
         pressure: 0.3,
-        ..plain(marks)
+        ..plain(kind)
     });
     let facing =
         |axis: Vec3| tilted(0.0, 9.0).with_rotation(Quat::from_rotation_arc(Vec3::Z, axis));
@@ -110,7 +110,7 @@ fn assert_marks_are_on_planes(cases: &[(&str, f32)]) {
         let found = covers(&mut small, s);
         let plane = [wall.translation - eye, wall.rotation * Vec3::Z];
         let apart = misplaced(&found, &s, plane, origin + eye.as_dvec3());
-        println!("{:?}, {x}: {apart} pixels differ", s.marks);
+        println!("{:?}, {x}: {apart} pixels differ", s.kind);
         assert!(apart < found.len() / 50, "{s:?}, {x}: {apart}");
     }
 }

@@ -26,7 +26,7 @@ fn inked() -> Hatching {
 
 /// The same without what is random, with a tone for every lightness.
 pub fn plain() -> Hatching {
-    crate::hatching::plain(HatchingMarks::Strokes)
+    crate::hatching::plain(HatchingKind::Strokes)
 }
 
 pub fn with(hatching: Hatching) -> ToonLight {
@@ -385,7 +385,7 @@ fn extreme_strokes_are_finite() {
         for anchor in [HatchingAnchor::Object, HatchingAnchor::Page] {
             let s = Hatching {
                 anchor,
-                ..extreme(HatchingMarks::Strokes, x)
+                ..extreme(HatchingKind::Strokes, x)
             };
             set_light(small, &with(s));
             small.headless.step(3);

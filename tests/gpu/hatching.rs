@@ -13,27 +13,27 @@ pub const SIZE: UVec2 = UVec2::new(160, 120);
 const FOV: f32 = 0.7;
 
 /// Black marks on white paper, without what is random.
-pub fn plain(marks: HatchingMarks) -> Hatching {
+pub fn plain(kind: HatchingKind) -> Hatching {
     Hatching {
         breaks: 0.0,
         wobble: 0.0,
         pressure: 0.0,
         bare_above: 1.0,
         solid_below: 0.0,
-        ..inked(marks)
+        ..inked(kind)
     }
 }
 
-fn inked(marks: HatchingMarks) -> Hatching {
+fn inked(kind: HatchingKind) -> Hatching {
     Hatching {
-        marks,
+        kind,
         ground: HatchingGround::Paper,
         ..default()
     }
 }
 
 fn strokes() -> Hatching {
-    plain(HatchingMarks::Strokes)
+    plain(HatchingKind::Strokes)
 }
 
 /// The darkness at a light.
@@ -206,7 +206,7 @@ fn strokes_are_where_the_plane_is() {
         let plane = [at.translation, at.rotation * Vec3::Z];
         small.clear();
         flat(&mut small, 0.2, at);
-        for s in [strokes(), inked(HatchingMarks::Strokes)] {
+        for s in [strokes(), inked(HatchingKind::Strokes)] {
             let found = covers(&mut small, s);
             let apart = misplaced(&found, &s, plane, DVec3::ZERO);
             println!("{degrees} degrees: {apart} pixels differ");
@@ -276,7 +276,7 @@ pub fn largest_change(light: f32, degrees: f32, s: Hatching, way: &[[i32; 2]]) -
 #[ignore = "long: an octave before three walls"]
 fn strokes_of_every_tone_grow_while_the_camera_comes_nearer() {
     for (light, degrees) in [(0.2, 25.0), (0.05, 0.0), (0.4, 50.0)] {
-        let s = inked(HatchingMarks::Strokes);
+        let s = inked(HatchingKind::Strokes);
         let largest = largest_change(light, degrees, s, WHOLE_WAY);
         assert!(largest < 0.25, "{light}, {degrees}: {largest}");
     }
@@ -356,7 +356,7 @@ fn abstraction_draws_strokes_farther_apart() {
 /// Truth: strokes travel with an object that has a screen, in every direction and turn.
 #[test]
 fn strokes_travel_with_their_object() {
-    let s = inked(HatchingMarks::Strokes);
+    let s = inked(HatchingKind::Strokes);
     // Up to 2.3 codes were measured.
     assert_marks_travel(s, Vec3::new(31.7, -8.3, 102.9), 3.0 / 255.0);
     // Up to 4.0: far from the origin, places are known to a thousandth of a unit.
@@ -456,9 +456,9 @@ fn what_is_small_is_more_even() {
 }
 
 /// Settings that are all one number.
-pub fn extreme(marks: HatchingMarks, x: f32) -> Hatching {
+pub fn extreme(kind: HatchingKind, x: f32) -> Hatching {
     Hatching {
-        marks,
+        kind,
         solid_below: x,
         bare_above: x,
         gamma: x,
@@ -495,25 +495,22 @@ fn extreme_hatching_is_finite_in_every_view() {
 
 fn assert_extremes_are_finite(fovs: &[f32]) {
     let mut small = empty();
-    for marks in [HatchingMarks::Strokes, HatchingMarks::Dots] {
+    for kind in [HatchingKind::Strokes, HatchingKind::Dots] {
         small.clear();
         small.insert(perspective(FOV));
-        let sky = covers(&mut small, plain(marks));
-        assert!(sky.iter().all(|c| c.abs() < 0.01), "{marks:?}");
+        let sky = covers(&mut small, plain(kind));
+        assert!(sky.iter().all(|c| c.abs() < 0.01), "{kind:?}");
         for (light, want) in [(0.0, 1.0), (1.0, 0.0)] {
             small.clear();
             flat(&mut small, light, tilted(40.0, 5.0));
             for anchor in [HatchingAnchor::Object, HatchingAnchor::Page] {
                 let s = Hatching {
                     anchor,
-                    ..plain(marks)
+                    ..plain(kind)
                 };
                 let found = covers(&mut small, s);
                 let is_wanted = |c: &f64| (c - want).abs() < 0.01;
-                assert!(
-                    found.iter().all(is_wanted),
-                    "{light}, {marks:?}, {anchor:?}"
-                );
+                assert!(found.iter().all(is_wanted), "{light}, {kind:?}, {anchor:?}");
             }
         }
         small.clear();
@@ -521,8 +518,8 @@ fn assert_extremes_are_finite(fovs: &[f32]) {
         for &fov in fovs {
             small.insert(perspective(fov));
             for x in EXTREMES {
-                let found = covers(&mut small, extreme(marks, x));
-                assert!(found.iter().all(|c| c.is_finite()), "{x}, {marks:?}");
+                let found = covers(&mut small, extreme(kind, x));
+                assert!(found.iter().all(|c| c.is_finite()), "{x}, {kind:?}");
             }
         }
     }

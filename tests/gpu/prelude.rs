@@ -52,7 +52,7 @@ pub use bevy_comics::{
     effect::{AnyEffect, EffectContext, EffectRegistry, EffectShader, EffectStage, Needs},
     effects::{
         ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle, Granularity,
-        HalftoneMode, HarmonyMode, HatchingAnchor, HatchingGround, HatchingMarks, LayerBorders,
+        HalftoneMode, HarmonyMode, HatchingAnchor, HatchingGround, HatchingKind, LayerBorders,
         PaintKernel, ScreenAnchor, ScreenSampling, ScreenShape, SpeedLineKind,
     },
     lines::{Creases, LineBoil, LineColor, LineResponse, LineWeight, ObjectEdges, Silhouettes},

@@ -15,7 +15,7 @@ use crate::{
 
 /// Dots of one size in rows, black on white paper.
 fn plain() -> Hatching {
-    crate::hatching::plain(HatchingMarks::Dots)
+    crate::hatching::plain(HatchingKind::Dots)
 }
 
 /// Dots of many sizes, which stray.

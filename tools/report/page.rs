@@ -3,7 +3,7 @@
 
 use bevy_comics::{
     ColorHarmony, Halftone,
-    effects::{FocusStyle, HarmonyMode, HatchingMarks, PaintKernel},
+    effects::{FocusStyle, HarmonyMode, HatchingKind, PaintKernel},
 };
 use bevy_comics_testkit::{
     page_work::{self, PageCounter},
@@ -146,28 +146,23 @@ fn errors(run: &Run) -> Table {
     push(along, position, edges(PaintKernel::Anisotropic), 0.1);
     let tones = "mean tone; 20 tones; 9 angles; 32 zooms";
     let random = "the same with breaks";
-    let mean = |marks, random| {
+    let mean = |kind, random| {
         // A window of 160 pixels, or random places.
         let samples = if random > 0.0 {
             samples / 2
         } else {
             samples * 25 / 16
         };
-        mean_tone_error(marks, random, samples)
+        mean_tone_error(kind, random, samples)
     };
-    push("hatching", tones, mean(HatchingMarks::Strokes, 0.0), 0.01);
-    push("hatching", random, mean(HatchingMarks::Strokes, 0.6), 0.03);
+    push("hatching", tones, mean(HatchingKind::Strokes, 0.0), 0.01);
+    push("hatching", random, mean(HatchingKind::Strokes, 0.6), 0.03);
     let random = "the same with dots that stray and vary";
-    push(
-        "hatching; dots",
-        tones,
-        mean(HatchingMarks::Dots, 0.0),
-        0.01,
-    );
+    push("hatching; dots", tones, mean(HatchingKind::Dots, 0.0), 0.01);
     push(
         "hatching; dots",
         random,
-        mean(HatchingMarks::Dots, 0.6),
+        mean(HatchingKind::Dots, 0.6),
         0.03,
     );
     let steps = "change of a tone by a step of the dial of 1/200; bands";

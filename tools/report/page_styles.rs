@@ -4,7 +4,7 @@ use bevy_comics::{
     Abstraction, BlackFlats, ColorHarmony, ComicStyle, DepthLayers, Effect, Focus, Halftone,
     Hatching, Misregistration, Paint, Paper, SpeedLines, ToneRamp, TwoTone, Vignette,
     effects::{
-        FocusAt, FocusStyle, Granularity, HalftoneMode, HatchingMarks, LayerBorders, PaintKernel,
+        FocusAt, FocusStyle, Granularity, HalftoneMode, HatchingKind, LayerBorders, PaintKernel,
         ScreenSampling, ScreenShape,
     },
 };
@@ -51,10 +51,7 @@ pub fn all() -> Vec<(&'static str, ComicStyle)> {
         ("halftone of four inks; whole dots", halftone(whole)),
         ("misregistration", plain::<Misregistration>()),
         ("hatching", plain::<Hatching>()),
-        (
-            "hatching; dots",
-            hatching(|s| s.marks = HatchingMarks::Dots),
-        ),
+        ("hatching; dots", hatching(|s| s.kind = HatchingKind::Dots)),
         (
             "hatching; simplify_small",
             hatching(|s| s.simplify_small = 1.0),

@@ -3,7 +3,7 @@
 use std::{f64::consts::PI, thread};
 
 use bevy::math::DVec3;
-use bevy_comics::{Hatching, effects::HatchingMarks};
+use bevy_comics::{Hatching, effects::HatchingKind};
 
 use crate::reference::{
     hatching::{Hatch, Surface},
@@ -26,9 +26,9 @@ fn wall(angle: f64, unit: f64, [x, y]: [f64; 2]) -> Surface {
 /// The largest difference of the mean darkness of a wall from the one that is asked for: twenty
 /// tones, nine angles up to 80 degrees, and 32 zooms over an octave. `random`: of breaks and
 /// wobble, and twice the pressure.
-pub fn mean_tone_error(marks: HatchingMarks, random: f32, samples: u32) -> f64 {
+pub fn mean_tone_error(kind: HatchingKind, random: f32, samples: u32) -> f64 {
     let settings = Hatching {
-        marks,
+        kind,
         breaks: random,
         wobble: random,
         pressure: 0.5 * random,

@@ -10,8 +10,8 @@ use bevy_comics::{
     ComicStyle, ComicsPlugin, DepthMap, Focus, Halftone, Hatching, IsoLines, Outlines, Paint,
     Paper, SpeedLines, ToneBands, ToneRamp, ToonLight, ToonScene, TwoTone,
     effects::{
-        FocusAt, FocusStyle, HalftoneMode, HatchingGround, HatchingMarks, PaintKernel,
-        ScreenAnchor, ScreenShape, SpeedLineKind,
+        FocusAt, FocusStyle, HalftoneMode, HatchingGround, HatchingKind, PaintKernel, ScreenAnchor,
+        ScreenShape, SpeedLineKind,
     },
     objects::{MeshSections, PatternAnchor},
     presets,
@@ -211,7 +211,7 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         BuiltIn::Village => village_effects(&style),
         BuiltIn::Figure => {
             let dots = Hatching {
-                marks: HatchingMarks::Dots,
+                kind: HatchingKind::Dots,
                 spacing: 3.0,
                 wobble: 1.0,
                 ground: HatchingGround::Paper,

@@ -28,8 +28,8 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Hatching {
-    /// What hatching is drawn with. Default: [`HatchingMarks::Strokes`].
-    pub marks: HatchingMarks,
+    /// What hatching is drawn with. Default: [`HatchingKind::Strokes`].
+    pub kind: HatchingKind,
     /// What strokes are fixed to. Default: [`HatchingAnchor::Object`].
     pub anchor: HatchingAnchor,
     /// What decides how dark the hatching is. Default: [`HatchingSource::Picture`].
@@ -131,7 +131,7 @@ pub enum HatchingAnchor {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum HatchingMarks {
+pub enum HatchingKind {
     /// Strokes.
     #[default]
     Strokes,
@@ -171,7 +171,7 @@ pub enum HatchingSource {
 impl Default for Hatching {
     fn default() -> Self {
         Self {
-            marks: HatchingMarks::Strokes,
+            kind: HatchingKind::Strokes,
             anchor: HatchingAnchor::Object,
             source: HatchingSource::Picture,
             solid_below: 0.15,
@@ -235,7 +235,7 @@ impl Effect for Hatching {
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         let on_things = self.anchor == HatchingAnchor::Object;
-        variants.flag("DOTS", self.marks == HatchingMarks::Dots);
+        variants.flag("DOTS", self.kind == HatchingKind::Dots);
         variants.flag("ON_THINGS", on_things);
         variants.flag("SIMPLIFY_SMALL", on_things && self.simplify_small > 0.0);
         variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
@@ -247,9 +247,9 @@ impl Effect for Hatching {
     }
 
     fn uniform(&self, view: &EffectContext) -> HatchingUniform {
-        let eyes = match self.marks {
-            HatchingMarks::Strokes => stroke_eyes,
-            HatchingMarks::Dots => dot_eyes,
+        let eyes = match self.kind {
+            HatchingKind::Strokes => stroke_eyes,
+            HatchingKind::Dots => dot_eyes,
         };
         let axes = self.axes().map(|axis| axis.as_dvec3().normalize());
         HatchingUniform {
@@ -294,13 +294,13 @@ impl Hatching {
     /// they lie in.
     pub fn axes(&self) -> [Vec3; 3] {
         let turn = self.angle.to_radians();
-        let axes = match (self.anchor, self.marks) {
-            (HatchingAnchor::Page, HatchingMarks::Strokes) => {
+        let axes = match (self.anchor, self.kind) {
+            (HatchingAnchor::Page, HatchingKind::Strokes) => {
                 Mat3::from_rotation_z(turn + FRAC_PI_4)
             }
-            (HatchingAnchor::Page, HatchingMarks::Dots) => Mat3::from_rotation_z(turn),
+            (HatchingAnchor::Page, HatchingKind::Dots) => Mat3::from_rotation_z(turn),
             // No side of a box sees one of them from its end.
-            (HatchingAnchor::Object, HatchingMarks::Strokes) => {
+            (HatchingAnchor::Object, HatchingKind::Strokes) => {
                 Mat3::from_rotation_y(turn)
                     * Mat3::from_cols(
                         Vec3::new(2.0, 2.0, -1.0) / 3.0,
@@ -308,7 +308,7 @@ impl Hatching {
                         Vec3::new(2.0, -1.0, 2.0) / 3.0,
                     )
             }
-            (HatchingAnchor::Object, HatchingMarks::Dots) => Mat3::from_rotation_y(turn),
+            (HatchingAnchor::Object, HatchingKind::Dots) => Mat3::from_rotation_y(turn),
         };
         [axes.x_axis, axes.y_axis, axes.z_axis]
     }

@@ -83,7 +83,7 @@ fn is_near(hatch: &Hatch, on: &Surface, tone: f64, found: f32) -> bool {
 
 /// Every tone, angle and level, on surfaces and on the page. `call`: the function, and the axes
 /// before they turn by the angle.
-fn check_marks(marks: HatchingMarks, ranges: [[f32; 2]; 13], [function, axes]: [&str; 2]) {
+fn check_marks(kind: HatchingKind, ranges: [[f32; 2]; 13], [function, axes]: [&str; 2]) {
     let row = vec(0.0f32..=1.0, 13).prop_filter_map("dots are seen from the front", |parts| {
         let mut row = std::array::from_fn(|k| {
             let [low, high]: [f32; 2] = ranges[k];
@@ -92,7 +92,7 @@ fn check_marks(marks: HatchingMarks, ranges: [[f32; 2]; 13], [function, axes]: [
         row[9] = row[9].round();
         let [normal, ray] = plane(&row);
         let is_front = normal.dot(ray.normalize()) < -0.05;
-        (is_front || marks == HatchingMarks::Strokes).then_some(row)
+        (is_front || kind == HatchingKind::Strokes).then_some(row)
     });
     let body = format!(
         "let s = strokes({axes});
@@ -105,7 +105,7 @@ fn check_marks(marks: HatchingMarks, ranges: [[f32; 2]; 13], [function, axes]: [
         let mut apart = 0;
         for (row, found) in rows.iter().zip(results) {
             let s = Hatching {
-                marks,
+                kind,
                 spacing: row[4],
                 length: row[5],
                 breaks: row[6],
@@ -134,7 +134,7 @@ fn check_marks(marks: HatchingMarks, ranges: [[f32; 2]; 13], [function, axes]: [
 fn strokes_match_the_reference() {
     let axes = "mat3x3<f32>(vec3(2.0, 2.0, -1.0) / 3.0, vec3(-1.0, 2.0, 2.0) / 3.0,
         vec3(2.0, -1.0, 2.0) / 3.0)";
-    check_marks(HatchingMarks::Strokes, STROKES, ["hatched", axes]);
+    check_marks(HatchingKind::Strokes, STROKES, ["hatched", axes]);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn dots_match_the_reference() {
     ranges[..2].fill([-3.0, 3.0]);
     ranges[10] = [0.1, 0.9];
     let axes = "mat3x3<f32>(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)";
-    check_marks(HatchingMarks::Dots, ranges, ["stippled", axes]);
+    check_marks(HatchingKind::Dots, ranges, ["stippled", axes]);
 }
 
 /// Truth: breaks leave the mean width of a line as it is.

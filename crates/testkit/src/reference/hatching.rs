@@ -6,7 +6,7 @@ use bevy::math::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 use bevy_comics::{
     Hatching,
     effect::linear_rgb,
-    effects::{HatchingGround, HatchingMarks},
+    effects::{HatchingGround, HatchingKind},
 };
 
 use super::{
@@ -176,8 +176,8 @@ impl<'a> Hatch<'a> {
 
     /// Coverage by strokes or dots of a mean darkness.
     pub fn cover(&self, on: &Surface, tone: f64) -> f64 {
-        match self.settings.marks {
-            HatchingMarks::Dots => Dots {
+        match self.settings.kind {
+            HatchingKind::Dots => Dots {
                 settings: self.settings,
                 spacing: self.spacing(),
                 drawing: self.drawing,
