@@ -11,7 +11,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
   --rounds N       repetitions of every variant; default 7, with --quick 1
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, lines, models,
-                   dashes, memory, straight, page, stability, ladder, parts, scene-parts, toon,
+                   dashes, history, straight, page, stability, ladder, parts, scene-parts, toon,
                    growth, many-objects, peers, peer-objects, flicker or soak
   --tables         write the CSV files alone, without text and plots
   --render         measure nothing; write text and plots from the CSV files

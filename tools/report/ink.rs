@@ -157,7 +157,7 @@ fn whiten(rig: &mut Rig) {
 }
 
 /// Pixels that change by more than two codes from frame to frame, and the time of a frame.
-pub fn memory(run: &Run) -> Result<(), String> {
+pub fn history(run: &Run) -> Result<(), String> {
     let (settled, frames, timed) = run.pick((4, 2, 1), (150, 64, 21));
     let size = run.size([160, 90], [640, 360]);
     let mut table = Table::new("scene,method,changed,pixels,ms");
@@ -169,8 +169,8 @@ pub fn memory(run: &Run) -> Result<(), String> {
     };
     let methods = [
         ("no lines", Drawn::Nothing),
-        ("no memory", lines(0.0)),
-        ("memory", lines(0.875)),
+        ("no history", lines(0.0)),
+        ("history", lines(0.875)),
     ];
     for scene in run.some(1, [BuiltIn::Teapot, BuiltIn::Village]) {
         let mut rig = Rig::new(Some(scene), size);
@@ -206,5 +206,5 @@ pub fn memory(run: &Run) -> Result<(), String> {
         }
         run.say(&format!("{}: changes counted", scene.name()));
     }
-    run.save("ink_memory", &table)
+    run.save("ink_history", &table)
 }

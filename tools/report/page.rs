@@ -21,7 +21,7 @@ use crate::{Run, table::Table};
 pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_screens", &screens(run))?;
     run.save("page_colors", &colors(run))?;
-    run.say("colours printed");
+    run.say("colors printed");
     run.save("page_errors", &errors(run))?;
     run.save("page_harmonies", &harmonies(run))?;
     run.say("painted");
@@ -93,7 +93,7 @@ fn screens(run: &Run) -> Table {
 /// Colors of four inks: ideal ones, ones that all take some of all light, and these without the
 /// phase of black.
 fn colors(run: &Run) -> Table {
-    let mut table = Table::new("black,ideal,grey,in_phase,beats");
+    let mut table = Table::new("black,ideal,gray,in_phase,beats");
     for black in run.some(1, [0.0, 0.5, 1.0]) {
         let s = Halftone {
             black_generation: black,
@@ -135,7 +135,7 @@ fn errors(run: &Run) -> Table {
     };
     let classic = "difference from Kuwahara's quadrants; linear light";
     let position = "movement of edges; px";
-    let colors = "colours of a sharp figure outside it; linear light";
+    let colors = "colors of a sharp figure outside it; linear light";
     let mut table = Table::new("effect,what,error,limit");
     let mut push = |effect: &str, what: &str, error: f64, limit: f64| {
         table.push(&[&effect, &what, &format!("{error:.2e}"), &limit]);

@@ -27,12 +27,12 @@ fn lines() -> Vec<(&'static str, ComicStyle)> {
         ("outlines", of(|_| ())),
         ("gaps up to 3 pixels closed", of(|o| o.gap_closing = 3)),
         ("overshooting by 8 pixels", of(|o| o.overshoot = 8.0)),
-        ("persistent for 4 frames", of(|o| o.hold_frames = 4)),
+        ("held for 4 frames", of(|o| o.hold_frames = 4)),
         ("under pressure", of(|o| o.weight = pressed())),
         ("without an ink budget", of(|o| o.ink_budget = 1.0)),
         ("with soft ink", of(soft)),
         (
-            "in the colour of surfaces",
+            "in the color of surfaces",
             of(|o| o.color = LineColor::SURFACE),
         ),
         ("and depth layers", layer_lines()),
@@ -160,10 +160,13 @@ fn changes() -> Vec<Part> {
     ];
     // The village has lines in most of its tiles, the teapot in few.
     for scene in [BuiltIn::Teapot, BuiltIn::Village] {
-        let forgetful = changed::<Outlines>(|o| o.history_weight = 0.0);
+        let without_history = changed::<Outlines>(|o| o.history_weight = 0.0);
         let styles = vec![
-            ("outlines; temporal anti-aliasing; no memory", forgetful),
-            ("outlines; temporal anti-aliasing; memory", outlines()),
+            (
+                "outlines; temporal anti-aliasing; no history",
+                without_history,
+            ),
+            ("outlines; temporal anti-aliasing; history", outlines()),
         ];
         parts.push(Part::on(scene, "temporal anti-aliasing", jitter, styles));
         let creases = |source| {

@@ -194,7 +194,7 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         folder,
         &Plot {
             file: "growth.svg",
-            title: &format!("Time of the default comic's passes: exponent {exponent:.2} (grey: 1)"),
+            title: &format!("Time of the default comic's passes: exponent {exponent:.2} (gray: 1)"),
             x: "pixels of the picture",
             y: "time, milliseconds",
             logarithmic: [true, true],

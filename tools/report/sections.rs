@@ -65,8 +65,8 @@ pub const SECTIONS: [Section; 19] = [
         WHOLE,
     ),
     section(
-        "memory",
-        ink::memory,
+        "history",
+        ink::history,
         "Do lines hold still under temporal anti-aliasing?",
         WHOLE,
     ),
@@ -79,13 +79,13 @@ pub const SECTIONS: [Section; 19] = [
     section(
         "page",
         page::measure,
-        "Do prints, strokes and paint keep tones, colours and edges?",
+        "Do prints, strokes and paint keep tones, colors and edges?",
         "The printed page",
     ),
     section(
         "stability",
         stability::measure,
-        "Do extreme depths and colours break the picture?",
+        "Do extreme depths and colors break the picture?",
         "2. Stability on stiff and extreme cases",
     ),
     section(
@@ -139,7 +139,7 @@ pub const SECTIONS: [Section; 19] = [
     section(
         "flicker",
         flicker::measure,
-        "Do colours by distance flicker when things come and go?",
+        "Do colors by distance flicker when things come and go?",
         "6. A range that does not flicker",
     ),
     Section {

@@ -250,18 +250,18 @@ fn rendered_cases() -> Vec<(&'static str, Scene)> {
                 rig.put(Cuboid::new(0.001, 2.0, 0.001), unlit(GRAY), at);
             }
         }),
-        ("HDR colour of 65504", |rig| {
+        ("HDR color of 65504", |rig| {
             let bright = LinearRgba::new(65504.0, 60000.0, 2e4, 1.0);
             cubes(rig, bright, 1.0, Vec3::ZERO);
         }),
-        ("negative colour", |rig| {
+        ("negative color", |rig| {
             cubes(rig, LinearRgba::new(-4.0, 0.5, -1e-6, 1.0), 1.0, Vec3::ZERO);
         }),
-        ("infinite colour", |rig| {
+        ("infinite color", |rig| {
             let bright = LinearRgba::new(f32::INFINITY, 1.0, f32::NEG_INFINITY, 1.0);
             cubes(rig, bright, 1.0, Vec3::ZERO);
         }),
-        ("colour that is not a number", |rig| {
+        ("color that is not a number", |rig| {
             cubes(
                 rig,
                 LinearRgba::new(f32::NAN, 1.0, 0.2, 1.0),

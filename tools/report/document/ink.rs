@@ -21,8 +21,8 @@ fn changed(table: &Table, row: &[String]) -> f64 {
 }
 
 pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
-    if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_memory.csv").exists() {
-        out.push_str("### Whole and steady lines\n\nNot measured yet: `report --only dashes` and `report --only memory`.\n\n");
+    if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_history.csv").exists() {
+        out.push_str("### Whole and steady lines\n\nNot measured yet: `report --only dashes` and `report --only history`.\n\n");
         return Ok(());
     }
     let table = load(folder, "ink_dashes")?;
@@ -51,7 +51,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         });
         let _ = writeln!(out, "| {model} | {} |", cells.join(" | "));
     }
-    let table = load(folder, "ink_memory")?;
+    let table = load(folder, "ink_history")?;
     out.push_str(
         "\nA still, white scene with lines under the engine's temporal anti-aliasing: pixels that change by more than two \
          codes from frame to frame, and the time of a frame.\n\n\
@@ -189,7 +189,7 @@ fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
 }
 
 pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
-    if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_memory.csv").exists() {
+    if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_history.csv").exists() {
         return straight_targets(folder);
     }
     let table = load(folder, "ink_dashes")?;
@@ -202,11 +202,11 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
             Target::at_most("dashes", what, 0.5, Some(found))
         })
         .collect();
-    let table = load(folder, "ink_memory")?;
-    for row in table.matching(&[("method", "memory")]) {
+    let table = load(folder, "ink_history")?;
+    for row in table.matching(&[("method", "history")]) {
         let scene = table.cell(row, "scene");
         let what = format!("{scene}: pixels that change under temporal anti-aliasing, %");
-        let target = Target::at_most("memory", what, 0.01, Some(changed(&table, row)));
+        let target = Target::at_most("history", what, 0.01, Some(changed(&table, row)));
         all.push(target.with_digits(4));
     }
     all.extend(straight_targets(folder)?);

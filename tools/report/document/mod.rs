@@ -43,7 +43,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
         let _ = writeln!(out, "| {} | {} |", row[0], row[1]);
     }
     out.push_str(
-        "\n`peers` is a program of its own, whose dependencies are built without optimisation (`opt-level` 0): it compares \
+        "\n`peers` is a program of its own, whose dependencies are built without optimization (`opt-level` 0): it compares \
          crates with each other, and its times do not compare with those of other sections. The profile of these is in \
          docs/benchmarks.md; until 26 November 2026, all of them were built with `opt-level` 1.\n\n\
          Variants are timed in turn (A B C A B C): the median of all rounds, less the frame without a style. Blits are \

@@ -46,11 +46,11 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     let colors = load(folder, "page_colors")?;
     out.push_str(
         "\nThe largest difference of the mean light of a print with four inks from that of independent screens, of 20 \
-         colours, three greys and three lights each, by the fraction of grey that is printed in black. Grey inks: cyan and \
+         colors, three grays and three lights each, by the fraction of gray that is printed in black. Gray inks: cyan and \
          magenta take some of all light, so that it counts whether screens are independent. In phase: the same, with \
-         black's screen not shifted. Beats: the slow part of the light of a grey gradient or of grey rings, with the \
+         black's screen not shifted. Beats: the slow part of the light of a gray gradient or of gray rings, with the \
          default inks and all plates.\n\n\
-         | black | ideal inks | grey inks | in phase | beats |\n|---|---|---|---|---|\n",
+         | black | ideal inks | gray inks | in phase | beats |\n|---|---|---|---|---|\n",
     );
     for row in &colors.rows {
         let of = |column| colors.number(row, column);
@@ -59,14 +59,14 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
             "| {} | {:.4} | {:.4} | {:.4} | {:.2} % |",
             colors.cell(row, "black"),
             of("ideal"),
-            of("grey"),
+            of("gray"),
             of("in_phase"),
             100.0 * of("beats"),
         );
     }
     let harmonies = load(folder, "page_harmonies")?;
     out.push_str(
-        "\nThe largest change of the lightness in OKLab (0 to 1) by a `ColorHarmony`, of 32 x 32 x 32 colours at three \
+        "\nThe largest change of the lightness in OKLab (0 to 1) by a `ColorHarmony`, of 32 x 32 x 32 colors at three \
          places in the depth map, with the strongest change of hue:\n\n\
          | mode | change |\n|---|---|\n",
     );
@@ -165,7 +165,7 @@ impl Errors {
                     let numbers = self.colors.numbers(&rows, column).into_iter();
                     numbers.fold(0.0, f64::max)
                 };
-                all.push(target("colour", most("ideal"), 0.01));
+                all.push(target("color", most("ideal"), 0.01));
                 all.push(target("moire of all plates", most("beats"), 0.01));
             }
         }

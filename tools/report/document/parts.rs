@@ -9,13 +9,13 @@ use crate::{
 };
 
 /// Lines under temporal anti-aliasing: their section, and what is compared in it.
-const MEMORY: &str = "part: temporal anti-aliasing";
-const WITH_MEMORY: &str = "outlines; temporal anti-aliasing; memory";
-const WITHOUT_MEMORY: &str = "outlines; temporal anti-aliasing; no memory";
+const TEMPORAL: &str = "part: temporal anti-aliasing";
+const WITH_HISTORY: &str = "outlines; temporal anti-aliasing; history";
+const WITHOUT_HISTORY: &str = "outlines; temporal anti-aliasing; no history";
 
 /// Styles whose base is another one of their section.
 const PAIRS: [[&str; 2]; 2] = [
-    [WITH_MEMORY, WITHOUT_MEMORY],
+    [WITH_HISTORY, WITHOUT_HISTORY],
     ["outlines; ink budget", "outlines; no ink budget"],
 ];
 
@@ -58,7 +58,7 @@ fn scene_parts(out: &mut String, times: &Table) {
     out.push_str(
         "What parts of the scene ask for, on the teapot if no other is named. The times include the prepass, but not \
          temporal anti-aliasing, since a camera without a style has it. Over the base: over the same style on the scene \
-         without the part, or without the memory of lines or the ink budget, timed in turn; the median, the least and the \
+         without the part, or without the history of lines or the ink budget, timed in turn; the median, the least and the \
          most of the rounds. Under temporal anti-aliasing, a copy is lost in the noise (-). Differences below 10 ms may be \
          noise. The glass is the mesh with most vertices:\n\n\
          | | ms | blits | over the base, ms | least to most |\n|---|---|---|---|---|\n",
@@ -77,7 +77,7 @@ fn scene_parts(out: &mut String, times: &Table) {
                     format!(", on the {scene}")
                 };
                 let blits = match cost.ratio[1] {
-                    ratio if ratio.is_finite() && section.as_str() != MEMORY => {
+                    ratio if ratio.is_finite() && section.as_str() != TEMPORAL => {
                         format!("{ratio:.2}")
                     }
                     _ => "-".to_owned(),
@@ -138,7 +138,11 @@ pub fn figure(folder: &Path) -> Option<String> {
         };
         let base = format!("base of: {name}");
         let rows = times.matching(&[("section", &section)]);
-        let style = if section == MEMORY { WITH_MEMORY } else { name };
+        let style = if section == TEMPORAL {
+            WITH_HISTORY
+        } else {
+            name
+        };
         for scene in times.distinct(&rows, "scene") {
             let over = over_base(&times, [&section, &base], &scene, style);
             let middle = over.map_or(f64::NAN, |[_, middle, _]| middle);
