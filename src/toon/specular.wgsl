@@ -9,7 +9,7 @@
     ambient::brightness,
 }
 #ifdef STYLIZED_HIGHLIGHT
-#import bevy_comics::toon::stylized_highlight_light::sign_of
+#import bevy_comics::toon::stylized_highlight_light::stylized_highlight_of
 #endif
 
 struct Specular {
@@ -61,7 +61,7 @@ fn specular_of(specular: Specular, s: Surface) -> vec3<f32> {
     // Where another light is nearly as bright, both draw plain highlights.
     let alone = clamp(10.0 * (1.0 - specular.next / max(specular.bright, 1e-30)), 0.0, 1.0);
     if alone > 0.0 {
-        highlight = mix(highlight, sign_of(s, specular.source), alone);
+        highlight = mix(highlight, stylized_highlight_of(s, specular.source), alone);
     }
 #endif
     return specular.color + specular.left * highlight;

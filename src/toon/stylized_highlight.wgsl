@@ -138,7 +138,7 @@ fn center_of(g: StylizedHighlight, radius: f32) -> vec2<f32> {
 
 // Distance of a place in the plane of half vectors from the border of the shape, in units of its
 // radius. `radius` is that of the plain highlight.
-fn sign_distance(g: StylizedHighlight, radius: f32, place: vec2<f32>) -> f32 {
+fn planar_distance(g: StylizedHighlight, radius: f32, place: vec2<f32>) -> f32 {
     let y = turned(g, place - center_of(g, radius)) / (g.scale * g.size * radius);
     return shape_distance(g, select(y, abs(y) - g.split, g.split > vec2(0.0)));
 }
@@ -173,7 +173,7 @@ fn stylized_highlight_distance(g: StylizedHighlight, frame: Frame, radius: f32, 
     if shape_of(g) == FAITHFUL {
         return faithful_distance(g, frame, radius, normal, half_vector);
     }
-    return sign_distance(g, radius, place_of(frame, normal, half_vector));
+    return planar_distance(g, radius, place_of(frame, normal, half_vector));
 }
 
 // How much of a pixel the shape covers, from the distance at the pixel and at two neighbors. A

@@ -48,7 +48,7 @@ fn distance_at(
 }
 
 // Strength of the highlight, without shadows.
-fn sign_of(s: Surface, source: Source) -> f32 {
+fn stylized_highlight_of(s: Surface, source: Source) -> f32 {
     let radius = stylized_highlight_radius(toon.light.highlight_edge, s.roughness);
     let polish = max(1.0 - 1.4 * s.roughness, 0.0);
     if radius <= 0.0 || polish <= 0.0 || dot(s.normal, source.to_highlight) <= 0.0 {

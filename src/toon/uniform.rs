@@ -154,7 +154,7 @@ impl ToonKey {
             (self.even_rim && has(&["DEPTH_PREPASS"]), "DEPTH_RIM"),
         ]);
         let ramp = self.ramp.into_iter().flat_map(RampKey::definitions);
-        let sign = self.stylized_highlight.map(|(shape, frame)| {
+        let shape_and_frame = self.stylized_highlight.map(|(shape, frame)| {
             let shape = ShaderDefVal::UInt("STYLIZED_HIGHLIGHT_SHAPE".into(), shape as u32);
             let flags = ["STYLIZED_HIGHLIGHT", frame.definition()];
             flags.map(ShaderDefVal::from).into_iter().chain([shape])
@@ -165,7 +165,7 @@ impl ToonKey {
             .flatten()
             .map(|name| ShaderDefVal::from(*name));
         let hatch = self.hatch.map(|hatch| hatch.definitions(others));
-        let modes = sign.into_iter().flatten().chain(proxy);
+        let modes = shape_and_frame.into_iter().flatten().chain(proxy);
         let modes = modes.chain(hatch.into_iter().flatten());
         flags.chain(ramp).chain(modes).collect()
     }

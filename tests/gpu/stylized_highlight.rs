@@ -1,4 +1,4 @@
-//! Signs of light and rims: their place, size and edges on a ball.
+//! Stylized highlights and rims: their place, size and edges on a ball.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -14,8 +14,8 @@ use crate::{
 
 /// A picture of the whole ball.
 const SIZE: u32 = 256;
-/// Pictures of the same scale, in which signs have room, and plain highlights of every roughness.
-const SIGN: u32 = 160;
+/// Pictures of the same scale, in which shapes have room, and plain highlights of every roughness.
+const SHAPE: u32 = 160;
 const PLAIN: u32 = 192;
 /// Of the ball, in units; a camera of the whole ball shows 2.
 const BALL: f64 = 0.95;
@@ -27,10 +27,10 @@ const RADIUS: f64 = 0.5 * BALL * SIZE as f64;
 /// The brightness of a highlight in the picture.
 const PEAK: f64 = 0.8;
 
-fn signed(sign: StylizedHighlight) -> ToonLight {
+fn shaped(highlight: StylizedHighlight) -> ToonLight {
     let polish = 1.0 - 1.4 * ROUGHNESS;
     ToonLight {
-        stylized_highlight: Some(sign),
+        stylized_highlight: Some(highlight),
         highlight: PEAK as f32 / (polish * polish),
         highlight_edge: EDGE,
         ..default()
@@ -113,9 +113,9 @@ fn covered(picture: &RgbaImage) -> (f64, DVec2) {
     summed(&covers(picture))
 }
 
-/// How much of every pixel of a picture of this size the sign covers by the ball's geometry at four
+/// How much of every pixel of a picture of this size the shape covers by the ball's geometry at four
 /// times the size. `half` is the half vector.
-fn true_covers(sign: &StylizedHighlight, half: DVec3, size: u32) -> Vec<f64> {
+fn true_covers(highlight: &StylizedHighlight, half: DVec3, size: u32) -> Vec<f64> {
     let radius = stylized_highlight_radius(EDGE.into(), ROUGHNESS.into());
     let is_covered = |at: DVec2| {
         let at = at / RADIUS;
@@ -126,7 +126,7 @@ fn true_covers(sign: &StylizedHighlight, half: DVec3, size: u32) -> Vec<f64> {
         }
         let normal = at.extend(rest.sqrt());
         let frame = frame_along(normal, DVec3::X);
-        distance(sign, frame, radius, normal, half) < 0.0
+        distance(highlight, frame, radius, normal, half) < 0.0
     };
     let places = (0..size).flat_map(|y| (0..size).map(move |x| place([x, y], size)));
     let cover = |middle: DVec2| {
@@ -136,55 +136,55 @@ fn true_covers(sign: &StylizedHighlight, half: DVec3, size: u32) -> Vec<f64> {
     places.map(cover).collect()
 }
 
-fn sign_of(shape: HighlightShape, change: fn(&mut StylizedHighlight)) -> StylizedHighlight {
-    let mut sign = StylizedHighlight {
+fn highlight_of(shape: HighlightShape, change: fn(&mut StylizedHighlight)) -> StylizedHighlight {
+    let mut highlight = StylizedHighlight {
         shape,
         ..StylizedHighlight::default()
     };
-    change(&mut sign);
-    sign
+    change(&mut highlight);
+    highlight
 }
 
-/// Checks that signs are where the geometry of the ball says.
-fn check_cover(signs: &[StylizedHighlight]) {
-    let mut small = ball(&signed(StylizedHighlight::default()), SIGN);
-    for &sign in signs {
-        set_light(&mut small, &signed(sign));
+/// Checks that shapes are where the geometry of the ball says.
+fn check_cover(highlights: &[StylizedHighlight]) {
+    let mut small = ball(&shaped(StylizedHighlight::default()), SHAPE);
+    for &highlight in highlights {
+        set_light(&mut small, &shaped(highlight));
         let found = covers(&drawn(&mut small));
-        let wanted = true_covers(&sign, DVec3::Z, SIGN);
+        let wanted = true_covers(&highlight, DVec3::Z, SHAPE);
         let ((area, middle), (true_area, center)) = (summed(&found), summed(&wanted));
-        assert!(true_area > 300.0, "{sign:?}: {true_area} pixels");
+        assert!(true_area > 300.0, "{highlight:?}: {true_area} pixels");
         assert!(
             (area / true_area - 1.0).abs() < 0.01,
-            "{sign:?}: {area} pixels, not {true_area}"
+            "{highlight:?}: {area} pixels, not {true_area}"
         );
         let away = middle.distance(center);
-        assert!(away < 0.5, "{sign:?}: {middle}, not {center}");
+        assert!(away < 0.5, "{highlight:?}: {middle}, not {center}");
         // The 16 parts of a pixel tell its cover to an eighth, and a slanted edge is off by 0.05.
         // Only where edges meet in a pixel is it off by more.
         let pairs = found.iter().zip(&wanted);
         let off = pairs
             .filter(|(found, wanted)| (*found - *wanted).abs() > 0.4)
             .count();
-        println!("{:?}: {off} of {true_area} pixels", sign.shape);
+        println!("{:?}: {off} of {true_area} pixels", highlight.shape);
         assert!(
             off as f64 <= 0.02 * true_area,
-            "{sign:?}: {off} of {true_area}"
+            "{highlight:?}: {off} of {true_area}"
         );
     }
 }
 
 /// Signs are where the geometry of the ball says: what moves, turns and bends them.
 #[test]
-fn signs_cover_what_they_should() {
+fn shapes_cover_what_they_should() {
     check_cover(&[
-        sign_of(HighlightShape::Disc, |s| {
+        highlight_of(HighlightShape::Disc, |s| {
             (s.scale, s.offset) = (Vec2::new(2.0, 0.8), Vec2::new(1.5, 0.7));
         }),
-        sign_of(HighlightShape::Star, |s| {
+        highlight_of(HighlightShape::Star, |s| {
             (s.size, s.points, s.bar) = (2.0, 5, 0.5);
         }),
-        sign_of(HighlightShape::Faithful, |s| {
+        highlight_of(HighlightShape::Faithful, |s| {
             (s.square, s.rotation) = (1.0, 30.0);
         }),
     ]);
@@ -192,9 +192,9 @@ fn signs_cover_what_they_should() {
 
 /// The same of every shape and what changes it.
 #[test]
-#[ignore = "long: every shape of a sign"]
-fn signs_of_every_shape_cover_what_they_should() {
-    let of = sign_of;
+#[ignore = "long: every shape"]
+fn every_shape_covers_what_it_should() {
+    let of = highlight_of;
     check_cover(&[
         StylizedHighlight::default(),
         of(HighlightShape::Disc, |s| s.scale = Vec2::new(2.0, 0.8)),
@@ -234,16 +234,16 @@ fn discs_are_the_plain_highlight_at_every_roughness() {
     check_roughness(&[0.0, 0.1, 0.2, 0.35, 0.5, 0.6]);
 }
 
-/// Checks that the disc of the sign is the plain highlight. From a roughness of 0.65 on, its peak
+/// Checks that the disc of the shape is the plain highlight. From a roughness of 0.65 on, its peak
 /// is below a few codes and cannot be measured.
 fn check_roughness(all: &[f32]) {
-    let mut small = ball(&signed(StylizedHighlight::default()), PLAIN);
+    let mut small = ball(&shaped(StylizedHighlight::default()), PLAIN);
     for roughness in all.iter().copied() {
         let polish = (1.0 - 1.4 * roughness).max(0.01);
         let light = ToonLight {
             // As bright as the strength allows.
             highlight: (PEAK as f32 / (polish * polish)).min(4.0),
-            ..signed(StylizedHighlight::default())
+            ..shaped(StylizedHighlight::default())
         };
         polish_to(&mut small, roughness);
         let peak = f64::from(light.highlight * polish * polish);
@@ -283,16 +283,16 @@ fn check_roughness(all: &[f32]) {
     }
 }
 
-/// Moved by parts of a pixel, a sign covers the same.
+/// Moved by parts of a pixel, a shape covers the same.
 #[test]
-fn signs_are_anti_aliased() {
+fn shapes_are_anti_aliased() {
     const SHIFTS: u32 = 16;
-    let sign = StylizedHighlight {
+    let highlight = StylizedHighlight {
         shape: HighlightShape::Window,
         rotation: 15.0,
         ..StylizedHighlight::default()
     };
-    let mut small = ball(&signed(sign), SIGN);
+    let mut small = ball(&shaped(highlight), SHAPE);
     small.headless.step(3);
     let ball = only::<Mesh3d>(&mut small);
     let areas: Vec<f64> = (0..SHIFTS)
@@ -313,17 +313,17 @@ fn signs_are_anti_aliased() {
     );
 }
 
-/// A light turns by 80 degrees in 360 frames. The sign moves smoothly, and is where the geometry
-/// says at every 90th. A sign that stood still for a frame would bend its way by 0.2 pixels.
+/// A light turns by 80 degrees in 360 frames. The shape moves smoothly, and is where the geometry
+/// says at every 90th. A shape that stood still for a frame would bend its way by 0.2 pixels.
 #[test]
 #[ignore = "long: 361 frames of a moving light"]
-fn signs_move_smoothly_with_the_light() {
-    let sign = StylizedHighlight {
+fn shapes_move_smoothly_with_the_light() {
+    let highlight = StylizedHighlight {
         shape: HighlightShape::Star,
         size: 2.0,
         ..StylizedHighlight::default()
     };
-    let mut small = ball(&signed(sign), SIZE);
+    let mut small = ball(&shaped(highlight), SIZE);
     let sun = only::<DirectionalLight>(&mut small);
     let mut middles = vec![];
     for frame in 0..=360 {
@@ -337,9 +337,9 @@ fn signs_move_smoothly_with_the_light() {
         let middle = covered(&picture).1;
         if frame % 90 == 0 {
             small.headless.step(2);
-            assert!(small.picture() == picture, "{degrees}: the sign lags");
+            assert!(small.picture() == picture, "{degrees}: the shape lags");
             let half = (to + Vec3::Z).normalize().as_dvec3();
-            let wanted = summed(&true_covers(&sign, half, SIZE)).1;
+            let wanted = summed(&true_covers(&highlight, half, SIZE)).1;
             assert!(
                 middle.distance(wanted) < 0.5,
                 "{degrees}: {middle}, not {wanted}"
@@ -355,22 +355,22 @@ fn signs_move_smoothly_with_the_light() {
     assert!(middles[0].distance(middles[360]) > 60.0);
 }
 
-/// Only the brightest light draws a sign; of two that are equal, none does, and between, a part of
+/// Only the brightest light draws a shape; of two that are equal, none does, and between, a part of
 /// it.
 #[test]
 fn the_brightest_light_draws_the_sign() {
     // A ring around the plain highlight.
-    let sign = StylizedHighlight {
+    let highlight = StylizedHighlight {
         offset: Vec2::new(2.5, 0.0),
         ..StylizedHighlight::default()
     };
-    let mut small = ball(&signed(sign), SIGN);
+    let mut small = ball(&shaped(highlight), SHAPE);
     let one = covered(&drawn(&mut small));
     assert!(one.1.x > 40.0, "{one:?}");
     let to = Vec3::new(-1.0, 0.0, 1.0);
     let weak = sun(&mut small, to, bright(0.5));
     let two = covered(&drawn(&mut small));
-    // The weaker one's highlight has half its light, and is where it is without a sign.
+    // The weaker one's highlight has half its light, and is where it is without a shape.
     assert!(two.0 > 1.3 * one.0 && two.1.x < one.1.x, "{one:?}, {two:?}");
     small.world().entity_mut(weak).insert(bright(0.95));
     let nearly = covered(&drawn(&mut small));
@@ -378,12 +378,12 @@ fn the_brightest_light_draws_the_sign() {
     let equal = covered(&drawn(&mut small));
     let plain = ToonLight {
         stylized_highlight: None,
-        ..signed(sign)
+        ..shaped(highlight)
     };
     set_light(&mut small, &plain);
     let plain = covered(&drawn(&mut small));
     assert!(equal.1.distance(plain.1) < 0.5, "{equal:?}, {plain:?}");
-    // A light that is 5 % brighter draws half of the sign, and half of the plain highlight.
+    // A light that is 5 % brighter draws half of the shape, and half of the plain highlight.
     let moment = |(area, middle): (f64, DVec2)| area * middle.extend(1.0);
     let [one, two, nearly, equal] = [one, two, nearly, equal].map(moment);
     let weak = 2.0 * (two - one);
@@ -393,11 +393,11 @@ fn the_brightest_light_draws_the_sign() {
     assert!(off < 0.01 * wanted.length(), "{nearly}, not {wanted}");
 }
 
-/// Behind the camera, a board keeps the light away: signs and plain highlights vanish, unless the
+/// Behind the camera, a board keeps the light away: shapes and plain highlights vanish, unless the
 /// material has no cast shadows.
 #[test]
 fn cast_shadows_hide_signs() {
-    let mut small = ball(&signed(StylizedHighlight::default()), SIZE);
+    let mut small = ball(&shaped(StylizedHighlight::default()), SIZE);
     let shadows = DirectionalLight {
         shadow_maps_enabled: true,
         ..bright(1.0)
@@ -416,7 +416,7 @@ fn cast_shadows_hide_signs() {
             let light = ToonLight {
                 stylized_highlight,
                 cast_shadows,
-                ..signed(StylizedHighlight::default())
+                ..shaped(StylizedHighlight::default())
             };
             set_light(&mut small, &light);
             covered(&drawn(&mut small)).0
@@ -428,7 +428,7 @@ fn cast_shadows_hide_signs() {
     }
 }
 
-/// How much wider than high a sign is, as the logarithm of the ratio of the squares.
+/// How much wider than high a shape is, as the logarithm of the ratio of the squares.
 fn wider_than_high(picture: &RgbaImage) -> f64 {
     let (area, middle) = covered(picture);
     let mut spread = DVec2::ZERO;
@@ -443,40 +443,40 @@ fn wider_than_high(picture: &RgbaImage) -> f64 {
 /// Signs turn with the picture, the world or the light.
 #[test]
 fn frames_turn_signs() {
-    let sign = |frame| StylizedHighlight {
+    let highlight = |frame| StylizedHighlight {
         shape: HighlightShape::Streak,
         size: 2.0,
         frame,
         ..StylizedHighlight::default()
     };
-    let mut small = ball(&signed(sign(HighlightFrame::View)), SIGN);
+    let mut small = ball(&shaped(highlight(HighlightFrame::View)), SHAPE);
     let wide = |small: &mut Small| wider_than_high(&drawn(small));
     assert!(wide(&mut small) > 1.0);
-    // The camera lies on its side: the sign of the world stays, that of the picture turns.
+    // The camera lies on its side: the shape of the world stays, that of the picture turns.
     let turned = Transform::from_xyz(0.0, 0.0, 5.0).looking_at(Vec3::ZERO, Vec3::X);
     small.insert(turned);
     assert!(wide(&mut small) > 1.0);
-    set_light(&mut small, &signed(sign(HighlightFrame::World)));
+    set_light(&mut small, &shaped(highlight(HighlightFrame::World)));
     assert!(wide(&mut small) < -1.0);
     // A light from above: along it is upwards in the upright picture.
     small.insert(Transform::from_xyz(0.0, 0.0, 5.0));
     let old = only::<DirectionalLight>(&mut small);
     small.world().despawn(old);
     sun(&mut small, Vec3::new(0.0, 1.0, 1.0), bright(1.0));
-    set_light(&mut small, &signed(sign(HighlightFrame::Light)));
+    set_light(&mut small, &shaped(highlight(HighlightFrame::Light)));
     assert!(wide(&mut small) < -0.5);
 }
 
-/// A sign in the frame of the tangents turns with its ball; without tangents it stays.
+/// A shape in the frame of the tangents turns with its ball; without tangents it stays.
 #[test]
 fn tangents_turn_signs() {
-    let sign = StylizedHighlight {
+    let highlight = StylizedHighlight {
         shape: HighlightShape::Streak,
         size: 2.0,
         frame: HighlightFrame::Tangent,
         ..StylizedHighlight::default()
     };
-    let mut small = ball(&signed(sign), SIGN);
+    let mut small = ball(&shaped(highlight), SHAPE);
     // The seam of the texture is behind, and no pole of it in front.
     let stands = Quat::from_rotation_x(FRAC_PI_2) * Quat::from_rotation_z(FRAC_PI_2);
     for has_tangents in [false, true] {

@@ -1,4 +1,4 @@
-//! Pictures of the toon material: signs of light, rims, and tones that change with depth.
+//! Pictures of the toon material: stylized highlights, rims, and tones that change with depth.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ use crate::{painted, save, sheet::in_rows, smoothed, strokes};
 const SETTLE: usize = 12;
 
 pub fn write(folder: &Path) -> Result<(), String> {
-    save(&signs(), &folder.join("signs.png"))?;
+    save(&highlights(), &folder.join("highlights.png"))?;
     save(&details(), &folder.join("details.png"))?;
     save(&painted::picture(), &folder.join("painted-ramps.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
@@ -143,34 +143,34 @@ fn ball() -> Mesh {
     Sphere::new(0.5).mesh().uv(96, 48)
 }
 
-/// Balls with one sign each.
-fn signs() -> RgbaImage {
+/// Balls with one stylized highlight each.
+fn highlights() -> RgbaImage {
     let eye = Transform::from_xyz(0.0, 1.7, 8.4).looking_at(Vec3::new(0.0, 0.55, 0.0), Vec3::Y);
     let mut room = Room::new(UVec2::new(800, 200), eye, 0.235);
     room.ground();
-    let sign = |shape, size, change: fn(&mut StylizedHighlight)| {
-        let mut sign = StylizedHighlight {
+    let highlight = |shape, size, change: fn(&mut StylizedHighlight)| {
+        let mut highlight = StylizedHighlight {
             shape,
             size,
             ..default()
         };
-        change(&mut sign);
-        sign
+        change(&mut highlight);
+        highlight
     };
-    let signs = [
-        sign(HighlightShape::Disc, 1.6, |_| ()),
-        sign(HighlightShape::Disc, 1.3, |s| s.split.x = 1.5),
-        sign(HighlightShape::Window, 2.4, |s| {
+    let highlights = [
+        highlight(HighlightShape::Disc, 1.6, |_| ()),
+        highlight(HighlightShape::Disc, 1.3, |s| s.split.x = 1.5),
+        highlight(HighlightShape::Window, 2.4, |s| {
             (s.square, s.rotation) = (0.7, -8.0);
         }),
-        sign(HighlightShape::Crescent, 2.8, |s| {
+        highlight(HighlightShape::Crescent, 2.8, |s| {
             (s.bar, s.rotation) = (0.3, -35.0);
         }),
-        sign(HighlightShape::Star, 4.0, |_| ()),
-        sign(HighlightShape::Streak, 3.6, |s| {
+        highlight(HighlightShape::Star, 4.0, |_| ()),
+        highlight(HighlightShape::Streak, 3.6, |s| {
             (s.bar, s.rotation) = (0.2, 40.0);
         }),
-        sign(HighlightShape::Faithful, 1.8, |s| {
+        highlight(HighlightShape::Faithful, 1.8, |s| {
             (s.square, s.sharpness, s.scale.x) = (0.4, 1, 1.5);
         }),
     ];
@@ -183,7 +183,7 @@ fn signs() -> RgbaImage {
         Color::srgb(0.24, 0.26, 0.34),
         Color::srgb(0.72, 0.3, 0.45),
     ];
-    for (k, (stylized_highlight, color)) in signs.into_iter().zip(colors).enumerate() {
+    for (k, (stylized_highlight, color)) in highlights.into_iter().zip(colors).enumerate() {
         let light = ToonLight {
             ramp: Some(per_light(Ramp::default().stops)),
             stylized_highlight: Some(stylized_highlight),

@@ -1,11 +1,11 @@
-//! Signs of light where directions are opposite or zero.
+//! Stylized highlights where directions are opposite or zero.
 
 use super::{toon::Numbers, *};
 
 #[test]
-fn signs_of_degenerate_directions_are_finite() {
+fn highlights_of_degenerate_directions_are_finite() {
     let import = "#import bevy_comics::toon::stylized_highlight::{StylizedHighlight, frame_along, \
-        stylized_highlight_coverage, faithful_distance, place_of, sign_distance}";
+        stylized_highlight_coverage, faithful_distance, place_of, planar_distance}";
     // Seven shapes, split or not.
     let body = "let split = vec2(f32(u(0u) / 7u), 0.0);
          let g = StylizedHighlight(vec2(i(2u), i(3u)), vec2(1.6, 0.7), split, vec2(0.8, 0.6), i(4u),
@@ -15,7 +15,7 @@ fn signs_of_degenerate_directions_are_finite() {
          if u(1u) == 1u { n = vec3(0.0); } else if u(1u) == 2u { h = vec3(1.0, 0.0, 0.0); }
          let f = frame_along(n, n, vec3(0.0, 1.0, 0.0));
          let a = faithful_distance(g, f, 0.3, n, h);
-         let b = sign_distance(g, 0.3, place_of(f, n, h));
+         let b = planar_distance(g, 0.3, place_of(f, n, h));
          let faithful = stylized_highlight_coverage(g, a, a, a);
          return vec4(b, faithful, stylized_highlight_coverage(g, b, b, b), 0.0);";
     let mut n = Numbers::new(1);

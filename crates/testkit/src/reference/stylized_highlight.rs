@@ -86,9 +86,9 @@ fn center(g: &StylizedHighlight, radius: f64) -> DVec2 {
     (g.offset.as_dvec2() * radius).clamp_length_max(2.0)
 }
 
-/// Distance of a place in the plane of half vectors from the border of the sign, in units of its
+/// Distance of a place in the plane of half vectors from the border of the shape, in units of its
 /// radius.
-fn sign_distance(g: &StylizedHighlight, radius: f64, place: DVec2) -> f64 {
+fn planar_distance(g: &StylizedHighlight, radius: f64, place: DVec2) -> f64 {
     let turn = turn(g);
     let turned = DVec2::new(turn.x, -turn.y).rotate(place - center(g, radius));
     let y = turned / (g.scale.as_dvec2() * f64::from(g.size) * radius);
@@ -119,7 +119,7 @@ fn moved(g: &StylizedHighlight, [du, dv]: [DVec3; 2], radius: f64, half_vector: 
     (h - pull * x * right - pull * y * up).normalize()
 }
 
-/// The same distance at a normal, for signs in the plane and for those of the paper.
+/// The same distance at a normal, for shapes in the plane and for those of the paper.
 pub fn distance(
     g: &StylizedHighlight,
     frame: [DVec3; 2],
@@ -132,6 +132,6 @@ pub fn distance(
             let h = moved(g, frame, radius, half_vector);
             place_of(frame, normal, h).length() / (f64::from(g.size) * radius) - 1.0
         }
-        _ => sign_distance(g, radius, place_of(frame, normal, half_vector)),
+        _ => planar_distance(g, radius, place_of(frame, normal, half_vector)),
     }
 }
