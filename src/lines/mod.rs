@@ -116,6 +116,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "cracks/read_planes.wgsl");
     load_shader_library!(app, "link/gaps.wgsl");
     load_shader_library!(app, "history/holds.wgsl");
+    load_shader_library!(app, "draw/near.wgsl");
     load_shader_library!(app, "draw/overshoot.wgsl");
     load_shader_library!(app, "link/chain.wgsl");
     load_shader_library!(app, "link/rim.wgsl");
