@@ -14,8 +14,8 @@ use bevy::{
 
 use super::{
     cracks::largest_buffer,
-    key::LineKey,
-    pipelines::{LinePass, LineShaders, SearchPass},
+    key::{LineKey, LinePass, SearchPass},
+    pipelines::LineShaders,
     request::LineRequest,
     tiles::TileList,
 };

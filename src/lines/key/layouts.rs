@@ -11,15 +11,14 @@ use bevy::render::render_resource::{
     },
 };
 
-use super::line_key::LineKey;
+use super::{
+    line_key::LineKey,
+    pass::{LinePass, SearchPass},
+};
 use crate::{
     depth::view::RANGE_SIZE,
     gpu::{UNFILTERABLE, sampled},
-    lines::{
-        pipelines::{LinePass, SearchPass},
-        request::LinePassUniform,
-        textures::BLOCK_FORMAT,
-    },
+    lines::{request::LinePassUniform, textures::BLOCK_FORMAT},
     objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
 

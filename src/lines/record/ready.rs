@@ -14,7 +14,7 @@ use crate::{
         cracks::{CrackBuffers, LineDensities},
         draw::StrokeList,
         history::LineHolds,
-        pipelines::SearchPass,
+        key::SearchPass,
         request::{LineRequest, WORKGROUP, blocks},
         textures::cleared,
         tiles::{TileList, TileLists, draw_tiles},
