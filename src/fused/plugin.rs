@@ -15,13 +15,16 @@ use bevy::{
 };
 
 use super::{
-    blue_noise::BlueNoise,
-    choose::choose_plans,
-    earlier_passes::prepare_pass_textures,
-    errors::{ShaderErrors, file_path},
-    inputs::PassSampler,
-    pass::{StylizePipeline, stylize},
-    prepare::{ViewFused, prepare_fused_pass},
+    pass::{
+        StylizePipeline,
+        blue_noise::BlueNoise,
+        earlier_passes::prepare_pass_textures,
+        errors::{ShaderErrors, file_path},
+        inputs::PassSampler,
+        prepare::{ViewFused, prepare_fused_pass},
+        stylize,
+    },
+    requests::choose::choose_plans,
 };
 use crate::{
     effect::{EffectRegistry, EffectTarget, EffectType, load_shaders},

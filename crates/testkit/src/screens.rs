@@ -28,7 +28,7 @@ pub const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
 pub const CELL_SIZES: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
 
 /// The tile of 64 x 64 grains that the crate prints with: the classes of their thresholds.
-pub(crate) const TILE: &[u8; 4096] = include_bytes!("../../../src/fused/blue_noise.bin");
+pub(crate) const TILE: &[u8; 4096] = include_bytes!("../../../src/fused/pass/blue_noise.bin");
 
 /// Thresholds of grains by column and row.
 pub fn tile(x: i64, y: i64) -> f64 {

@@ -1,5 +1,5 @@
 //! The order of the grains of a tile by void and cluster (Ulichney 1993): grains are added where
-//! the others leave the largest gap. It made `src/fused/blue_noise.bin`.
+//! the others leave the largest gap. It made `src/fused/pass/blue_noise.bin`.
 
 use crate::screens::TILE;
 

@@ -11,9 +11,10 @@ use bevy::{
     },
 };
 
-use super::{Plan, blue_noise::BlueNoise, key::StylizeKey};
+use super::blue_noise::BlueNoise;
 use crate::{
     depth::view::ViewUniform,
+    fused::{Plan, key::StylizeKey},
     gpu::buffer,
     lines::{LineLayersUniform, LinesUniform},
 };
@@ -29,7 +30,7 @@ pub(crate) struct FusedRequest {
     pub pipeline: CachedRenderPipelineId,
     /// Draws all pixels before the tiles of `pipeline`, see [`DrawnArea::Base`].
     ///
-    /// [`DrawnArea::Base`]: super::drawn_area::DrawnArea::Base
+    /// [`DrawnArea::Base`]: crate::fused::key::drawn_area::DrawnArea::Base
     pub base: Option<CachedRenderPipelineId>,
     pub context: EffectContext,
     pub view: ViewUniform,
@@ -107,7 +108,7 @@ pub(crate) struct ViewFused {
     pub uniform: Buffer,
 }
 
-pub(super) fn prepare_fused_pass(
+pub(crate) fn prepare_fused_pass(
     mut commands: Commands,
     views: Query<(Entity, &FusedRequest, Option<&ViewFused>)>,
     stale: Query<Entity, (With<ViewFused>, Without<FusedRequest>)>,

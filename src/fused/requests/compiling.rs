@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::lines::{FindPass, LinePasses};
 
-pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
+pub(crate) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
     let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
     let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
     let cracks = passes.cracks.as_ref().is_some_and(|cracks| {
@@ -25,7 +25,7 @@ pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool 
     resolve || search || cracks || drawn.into_iter().flatten().any(render)
 }
 
-pub(super) fn is_compiling(state: &CachedPipelineState) -> bool {
+pub(crate) fn is_compiling(state: &CachedPipelineState) -> bool {
     match state {
         CachedPipelineState::Queued | CachedPipelineState::Creating(_) => true,
         // The pipeline cache retries after these errors.

@@ -8,7 +8,7 @@ use crate::composite::DebugView;
 
 /// Which of the drawn effects of a plan a pass applies.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Pass {
+pub(crate) struct Pass {
     /// Positions in [`Plan::drawn`].
     pub effects: Range<usize>,
     /// The pass starts from the picture that the one before has drawn.
@@ -21,7 +21,7 @@ pub(super) struct Pass {
 
 /// What an effect reads besides the picture before it, with the effect's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reads {
+pub(crate) enum Reads {
     /// Means over boxes of that picture.
     BoxStatistics(&'static str),
     /// A number of its own at every pixel.
@@ -30,7 +30,7 @@ pub(super) enum Reads {
 
 /// The passes of a plan, in order: one, and one more for each effect that reads the picture
 /// before it at other places. A debug view ends with the pass of its effect.
-pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
+pub(crate) fn passes(plan: &Plan) -> Vec<Pass> {
     let count = plan.drawn().count();
     let mut starts = vec![0];
     starts.extend(
@@ -95,7 +95,7 @@ fn last_shown(plan: &Plan, view: DebugView) -> usize {
 
 impl DebugView {
     /// The inputs that the view reads.
-    pub(super) fn needs(self) -> Needs {
+    pub(crate) fn needs(self) -> Needs {
         match self {
             Self::DepthMap | Self::RawRange => Needs::MAP,
             Self::Silhouettes | Self::Creases => Needs::LINES,
@@ -107,7 +107,7 @@ impl DebugView {
 
 impl Plan {
     /// Whether the colors are printed: the view is then styled after FXAA and SMAA.
-    pub(super) fn runs_after_anti_aliasing(&self) -> bool {
+    pub(crate) fn runs_after_anti_aliasing(&self) -> bool {
         self.drawn().any(AnyEffect::any_runs_after_anti_aliasing)
     }
 }

@@ -14,12 +14,16 @@ use bevy::{
     },
 };
 
-use super::{Plan, missing::Input};
-use crate::{composite::BeyondPrepass, depth::view::depth_rect, objects::QueuedDepth};
+use crate::{
+    composite::BeyondPrepass,
+    depth::view::depth_rect,
+    fused::{Plan, plan::missing::Input},
+    objects::QueuedDepth,
+};
 
 /// The inputs that a view provides.
 #[derive(Clone, Copy)]
-pub(super) struct Scene {
+pub(crate) struct Scene {
     pub viewport: UVec4,
     /// Unit vector to the right of the camera, in world space; to the left of a mirrored one.
     pub right: Vec3,
@@ -42,7 +46,7 @@ pub(super) struct Scene {
 }
 
 /// The textures of a view, and what is drawn into copies of them.
-pub(super) type SceneTextures<'a> = (
+pub(crate) type SceneTextures<'a> = (
     Option<&'a ViewPrepassTextures>,
     Option<&'a ViewDepthTexture>,
     Option<&'a QueuedDepth>,

@@ -18,7 +18,7 @@ use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};
 /// Names of the effects whose shader errors were logged, so that each is logged
 /// once.
 #[derive(Resource, Default)]
-pub(super) struct ShaderErrors(Mutex<HashSet<&'static str>>);
+pub(crate) struct ShaderErrors(Mutex<HashSet<&'static str>>);
 
 impl ShaderErrors {
     /// If a pipeline is missing because the shader of an effect has an error,
@@ -78,7 +78,7 @@ fn failed_effect(
 }
 
 /// The asset path of an effect's module, which the composer's error messages show.
-pub(super) fn file_path(effect: &EffectType) -> String {
+pub(crate) fn file_path(effect: &EffectType) -> String {
     format!("effect `{}`: {}", effect.name, effect.shader.path)
 }
 

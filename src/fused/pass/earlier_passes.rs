@@ -15,15 +15,19 @@ use bevy::{
 
 use super::{
     inputs::{Inputs, PreviousPass},
-    intermediate::{Drawn, PACKED_FORMAT, PASS_FORMAT},
-    key::StylizeKey,
     prepare::{EarlierPassRequest, FusedRequest, TexturePass},
 };
-use crate::gpu::{attachment, texture};
+use crate::{
+    fused::key::{
+        StylizeKey,
+        intermediate::{Drawn, PACKED_FORMAT, PASS_FORMAT},
+    },
+    gpu::{attachment, texture},
+};
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
-pub(super) struct PassTextures {
+pub(crate) struct PassTextures {
     /// A pass cannot read what it draws to, so more than one pass draw to two in turns.
     pictures: Vec<CachedTexture>,
     /// The same of pictures with numbers.
@@ -48,7 +52,7 @@ impl PassTextures {
     }
 }
 
-pub(super) fn prepare_pass_textures(
+pub(crate) fn prepare_pass_textures(
     mut commands: Commands,
     views: Query<(Entity, &FusedRequest)>,
     prepared: Query<Entity, With<PassTextures>>,
@@ -93,7 +97,7 @@ fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescripto
     texture("comics_pass", (UVec2::new(width, height), 1), format, usage)
 }
 
-pub(super) fn described<'a>(
+pub(crate) fn described<'a>(
     attachments: &'a [Option<RenderPassColorAttachment<'a>>],
 ) -> RenderPassDescriptor<'a> {
     RenderPassDescriptor {
@@ -103,7 +107,7 @@ pub(super) fn described<'a>(
     }
 }
 
-pub(super) struct EarlierPasses<'a>(Vec<EarlierPass<'a>>);
+pub(crate) struct EarlierPasses<'a>(Vec<EarlierPass<'a>>);
 
 struct EarlierPass<'a> {
     picture: Draw<'a>,

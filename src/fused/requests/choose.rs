@@ -16,14 +16,13 @@ use bevy::{
 };
 
 use super::{
-    Plan, ViewPlan,
-    prepare::FusedRequest,
-    requests::Services,
+    Services,
     scene::{Scene, SceneTextures},
 };
 use crate::{
     depth::{passes::RangePasses, prepare::ViewDepthRange, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    fused::{Plan, ViewPlan, pass::prepare::FusedRequest},
     lines::{LinePasses, LineRequest, ViewHighlights},
     objects::{DepthWanted, IdRequest, IdsWanted},
 };

@@ -1,12 +1,18 @@
 //! The plan of a camera, made from its components. Whatever is not in the plan is
 //! neither compiled, bound, packed nor dispatched.
 
+pub(super) mod device;
+pub(super) mod missing;
+pub(super) mod passes;
+mod reasons;
+pub(super) mod view_plan;
+
 use crate::effect::{AnyEffect, EffectStage, EffectType, Needs};
 use std::fmt::Debug;
 
 use bevy::ecs::{entity::Entity, world::EntityRef};
 
-use super::device::DeviceLacks;
+use self::device::DeviceLacks;
 use crate::{
     composite::{BeyondPrepass, Composite, DebugView, OwnPixels, SplitView, StyleWeight},
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
@@ -18,7 +24,7 @@ use crate::{
 /// An effect in a camera's plan.
 #[derive(Clone, Debug)]
 pub(super) struct Planned {
-    /// Sanitised; its strength is above 0.
+    /// Sanitized; its strength is above 0.
     pub effect: Box<dyn AnyEffect>,
     /// Not a component of the camera: another effect or the debug view implies it.
     pub implied: bool,

@@ -5,11 +5,13 @@ use bevy::{
     render::{camera::ExtractedCamera, view::ExtractedView},
 };
 
-use super::{Plan, ViewPlan};
-use crate::effect::{EffectContext, place_in};
+use crate::{
+    effect::{EffectContext, place_in},
+    fused::{Plan, ViewPlan},
+};
 
 /// What the effects of a view are told about it.
-pub(super) fn effect_context(
+pub(crate) fn effect_context(
     view: &ViewPlan,
     plan: &Plan,
     viewport: UVec4,

@@ -1,5 +1,8 @@
 //! The key that selects a pipeline of the fused pass.
 
+pub(super) mod drawn_area;
+pub(super) mod intermediate;
+
 use crate::effect::{
     AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, definition,
 };
@@ -14,12 +17,14 @@ use bevy::{
     shader::ShaderDefVal,
 };
 
+use self::{
+    drawn_area::DrawnArea,
+    intermediate::{Boxes, Drawn, PACKED_FORMAT, PASS_FORMAT, Read},
+};
 use super::{
     Plan,
     compose::{left_out, masked_by},
-    drawn_area::DrawnArea,
-    intermediate::{Boxes, Drawn, PACKED_FORMAT, PASS_FORMAT, Read},
-    passes::{Pass, Reads},
+    plan::passes::{Pass, Reads},
 };
 use crate::{
     composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},

@@ -1,5 +1,13 @@
 //! Turns the plan of a view into requests to the services.
 
+pub(super) mod choose;
+mod compiling;
+mod context;
+#[cfg(feature = "objects")]
+mod highlights;
+mod lines;
+mod scene;
+
 use std::sync::Arc;
 
 use bevy::{
@@ -13,18 +21,21 @@ use bevy::{
 };
 
 #[cfg(feature = "objects")]
-use super::highlights::{HighlightPipelines, HighlightRequests, remove_highlights};
-use super::{
-    Plan, ViewPlan,
+use self::highlights::{HighlightPipelines, HighlightRequests, remove_highlights};
+use self::{
     compiling::{are_compiling, is_compiling},
     context::effect_context,
-    drawn_area::DrawnArea,
-    key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
-    pass::StylizePipeline,
-    passes::{Reads, passes},
-    prepare::{EarlierPassRequest, FusedRequest, TexturePass},
     scene::Scene,
+};
+use super::{
+    Plan, ViewPlan,
+    key::{KeyInputs, StylizeKey, drawn_area::DrawnArea},
+    pass::{
+        StylizePipeline,
+        prepare::{EarlierPassRequest, FusedRequest, TexturePass},
+    },
+    plan::passes::{Reads, passes},
 };
 use crate::{
     depth::{

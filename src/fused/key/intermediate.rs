@@ -2,12 +2,12 @@
 
 use bevy::{render::render_resource::TextureFormat, shader::ShaderDefVal};
 
-use super::compose::{aux_scalar_of, boxes_of};
+use crate::fused::compose::{aux_scalar_of, boxes_of};
 
 /// Linear light, multiplied by the opacity, and the opacity.
-pub(super) const PASS_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+pub(crate) const PASS_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// As `box_statistics.wgsl` and `aux_scalar.wgsl` pack them.
-pub(super) const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
+pub(crate) const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
 /// What a pass draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

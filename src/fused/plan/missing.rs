@@ -2,7 +2,7 @@
 
 use crate::effect::Needs;
 
-use super::{Plan, device::DeviceLacks, plan::Planned};
+use super::{Plan, Planned, device::DeviceLacks};
 use crate::{
     composite::{BeyondPrepass, DebugView, OwnPixels},
     diagnostics::SkipReason,

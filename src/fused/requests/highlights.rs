@@ -10,9 +10,10 @@ use bevy::{
     },
 };
 
-use super::{Plan, ViewPlan, lines::plain_request, scene::Scene};
+use super::{lines::plain_request, scene::Scene};
 use crate::{
     depth::view::ViewUniform,
+    fused::{Plan, ViewPlan},
     lines::{
         HighlightKey, HighlightPipeline, LinePasses, LinePipelines, LineRequest, Outlines,
         ViewHighlights,
@@ -29,7 +30,7 @@ pub(crate) struct HighlightPipelines<'w> {
 }
 
 /// The requests for the lines of the highlighted objects of a view.
-pub(super) struct HighlightRequests {
+pub(crate) struct HighlightRequests {
     layer: LayerRequest,
     lines: (LineRequest, LinePasses),
     pipeline: CachedRenderPipelineId,
@@ -111,7 +112,7 @@ impl HighlightRequests {
 }
 
 /// Removes the requests for the lines of highlighted objects.
-pub(super) fn remove_highlights(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+pub(crate) fn remove_highlights(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
     if let Some(layer) = layer {
         commands.entity(layer).despawn();
     }

@@ -13,7 +13,7 @@ use bevy::{
     },
 };
 
-use super::{blue_noise::BlueNoise, key::StylizeKey};
+use super::blue_noise::BlueNoise;
 use crate::{
     bind_groups::Binder,
     composite::DRAWN_DEPTH_BINDING,
@@ -23,6 +23,7 @@ use crate::{
     },
     diagnostics::SkipReason,
     effect::Needs,
+    fused::key::StylizeKey,
     gpu::entry,
     lines::ViewLines,
     objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
@@ -30,7 +31,7 @@ use crate::{
 
 /// Reads between the centers of pixels.
 #[derive(Resource)]
-pub(super) struct PassSampler(pub Sampler);
+pub(crate) struct PassSampler(pub Sampler);
 
 impl PassSampler {
     pub fn new(device: &RenderDevice) -> Self {
@@ -47,7 +48,7 @@ impl PassSampler {
 
 /// The textures and buffers that the services have prepared for the view in this
 /// frame.
-pub(super) type ViewInputs<'a> = (
+pub(crate) type ViewInputs<'a> = (
     (SurfaceParts<'a>, Option<&'a ViewDepthTexture>),
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
@@ -55,7 +56,7 @@ pub(super) type ViewInputs<'a> = (
 );
 
 /// What all passes of a view bind.
-pub(super) struct Inputs<'a> {
+pub(crate) struct Inputs<'a> {
     pub entries: Vec<BindGroupEntry<'a>>,
     pub sampler: &'a PassSampler,
     pub binder: &'a Binder<'a>,
@@ -63,7 +64,7 @@ pub(super) struct Inputs<'a> {
 
 /// What the passes before a pass have drawn for it.
 #[derive(Clone, Copy, Default)]
-pub(super) struct PreviousPass<'a> {
+pub(crate) struct PreviousPass<'a> {
     pub picture: Option<&'a TextureView>,
     /// Means, or the picture with numbers.
     pub packed: Option<&'a TextureView>,
@@ -85,7 +86,7 @@ impl Inputs<'_> {
 
 /// The bindings of the pass besides the picture and the uniform; an error if one of
 /// them is missing in this frame.
-pub(super) fn entries<'a>(
+pub(crate) fn entries<'a>(
     key: &StylizeKey,
     ((surfaces, drawn), range, lines, (ids, depths)): ViewInputs<'a>,
     object_styles: &'a ObjectStyleBuffer,

@@ -1,6 +1,12 @@
 //! The fused full-screen pass: reads the picture of a camera once, applies every
 //! effect, and writes the picture once.
 
+pub(super) mod blue_noise;
+pub(super) mod earlier_passes;
+pub(super) mod errors;
+pub(super) mod inputs;
+pub(super) mod prepare;
+
 use bevy::{
     core_pipeline::FullscreenShader,
     prelude::*,
@@ -16,14 +22,14 @@ use bevy::{
     },
 };
 
-use super::{
+use self::{
     blue_noise::BlueNoise,
     earlier_passes::{EarlierPasses, PassTextures, described},
     errors::ShaderErrors,
     inputs::{Inputs, PassSampler, ViewInputs, entries},
-    key::StylizeKey,
     prepare::{FusedRequest, ViewFused},
 };
+use super::key::StylizeKey;
 use crate::{
     bind_groups::Binder,
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},

@@ -3,9 +3,10 @@
 use crate::effect::{AffectedArea, EffectContext, Needs};
 use bevy::math::Vec4Swizzles;
 
-use super::{Plan, ViewPlan, scene::Scene};
+use super::scene::Scene;
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
+    fused::{Plan, ViewPlan},
     lines::{
         FogUniform, HistoryRequest, LineFog, LineModifiers, LineRequest, LineWeight, MapJumps,
         Outlines, Sheet, SheetUniform,
@@ -15,7 +16,7 @@ use crate::{
 
 /// The largest [`Effect::line_reach`](crate::effect::Effect::line_reach); `None` if an effect that
 /// reads lines does not know it.
-pub(super) fn line_reach(plan: &Plan, view: &EffectContext) -> Option<f32> {
+pub(crate) fn line_reach(plan: &Plan, view: &EffectContext) -> Option<f32> {
     plan.drawn()
         .filter(|effect| effect.any_needs().contains(Needs::LINES))
         .try_fold(0.0_f32, |reach, effect| {
@@ -26,7 +27,7 @@ pub(super) fn line_reach(plan: &Plan, view: &EffectContext) -> Option<f32> {
 /// The jumps of the depth map that effects of the plan are limited to. `None` also if
 /// they are not looked for: in multisampled views, in views whose main pass has a
 /// resolution of its own, beside faithful lines, and under a debug view.
-pub(super) fn map_jumps(plan: &Plan, scene: &Scene, context: &EffectContext) -> Option<MapJumps> {
+pub(crate) fn map_jumps(plan: &Plan, scene: &Scene, context: &EffectContext) -> Option<MapJumps> {
     let (_, samples) = scene.depth?;
     let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
     let has_window = samples == 1 && scene.main_pass_size.is_none();
@@ -43,7 +44,7 @@ pub(super) fn map_jumps(plan: &Plan, scene: &Scene, context: &EffectContext) -> 
 }
 
 /// The request for the lines of a plan; `None` if there is nothing to find.
-pub(super) fn line_request(
+pub(crate) fn line_request(
     view: &ViewPlan,
     (plan, context): (&Plan, &EffectContext),
     scene: &Scene,
@@ -88,7 +89,7 @@ pub(super) fn line_request(
 }
 
 /// A request for lines that depend on nothing but these settings and the view's depth.
-pub(super) fn plain_request(
+pub(crate) fn plain_request(
     view: &ViewPlan,
     settings: Outlines,
     scene: &Scene,

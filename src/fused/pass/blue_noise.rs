@@ -20,7 +20,7 @@ const CLASSES: &[u8; SIDE * SIDE] = include_bytes!("blue_noise.bin");
 
 /// The tile as a texture, once an effect has needed it.
 #[derive(Resource, Default)]
-pub(super) struct BlueNoise(Option<TextureView>);
+pub(crate) struct BlueNoise(Option<TextureView>);
 
 impl BlueNoise {
     /// Makes the texture if there is none yet.

@@ -1,6 +1,6 @@
 //! Why a camera's plan leaves a stage out.
 
-use super::plan::Plan;
+use super::Plan;
 use crate::diagnostics::{ComicsStage, SkipReason};
 use crate::effect::EffectType;
 
