@@ -72,6 +72,12 @@ pub const ALWAYS: &[&str] = &[
     "AVAILABLE_STORAGE_BUFFER_BINDINGS=8",
 ];
 
+/// All definitions of these lists.
+pub fn listed() -> Definitions {
+    let all = [parsed(LISTS).concat().concat(), ALWAYS.to_vec()];
+    definitions(&all.concat())
+}
+
 /// The definitions of a row, without those that need others that it lacks.
 fn names(mut names: Vec<&'static str>) -> Vec<&'static str> {
     names.extend(ALWAYS);

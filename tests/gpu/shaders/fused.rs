@@ -33,6 +33,18 @@ pub fn of_pass(parts: &[&[Definition<'static>]]) -> Definitions {
     all
 }
 
+/// Every mode of every effect, and what views and passes set.
+pub fn variants() -> Vec<Definitions> {
+    let modes = effects::all().iter().flat_map(|effect| &effect.modes);
+    [
+        modes.cloned().collect::<Vec<_>>(),
+        views(),
+        debug_views(),
+        parts::variants(),
+    ]
+    .concat()
+}
+
 /// Composes the fused pass with each of these.
 fn check(variants: &[Definitions]) {
     let source = EffectRegistry::built_in().shader();

@@ -5,6 +5,10 @@ use super::{
     covering::{also, each, has, has_any, pairs, push_if},
 };
 
+pub fn variants() -> Vec<Variant> {
+    [finding(), walking(), completing(), settling(), drawing()].concat()
+}
+
 /// What lines are along: the kinds of a view, and last those of highlighted objects.
 const KINDS: &str = "
     | SILHOUETTES | CREASES | OBJECT_EDGES | SILHOUETTES CREASES | SILHOUETTES OBJECT_EDGES

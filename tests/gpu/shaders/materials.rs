@@ -19,6 +19,10 @@ pub fn library() -> Library {
     Library::new(shaders.iter().map(|(_, shader)| shader))
 }
 
+pub fn variants() -> Vec<Variant> {
+    [ink(), transparent()].concat()
+}
+
 const PROJECTIONS: &str = "VIEW_PROJECTION_PERSPECTIVE | VIEW_PROJECTION_ORTHOGRAPHIC
     | VIEW_PROJECTION_NONSTANDARD";
 
@@ -82,7 +86,7 @@ fn in_prepass(mut names: Vec<&'static str>) -> Vec<&'static str> {
 #[test]
 fn every_shader_among_the_engines_composes_and_validates() {
     let mut library = library();
-    for (file, definitions) in [ink(), transparent()].concat() {
+    for (file, definitions) in variants() {
         let source = shader(file);
         // Only native devices have arrays of bindings.
         let composed = if definitions.contains(&("BINDLESS", None)) {

@@ -14,7 +14,7 @@ use std::fs;
 
 use bevy_comics_testkit::wgsl::{files, module_with};
 
-use crate::prelude::*;
+use crate::{prelude::*, toon_shaders};
 
 /// Definitions that are set together.
 pub type Definitions = Vec<Definition<'static>>;
@@ -80,4 +80,35 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
         found.iter().flat_map(with).collect()
     };
     lists.iter().fold(vec![Vec::new()], all)
+}
+
+/// The definitions that the text of a shader asks for.
+fn asked(text: &str) -> Vec<&str> {
+    let conditions = text.lines().filter_map(|line| {
+        let directive = line.trim_start().strip_prefix('#')?;
+        let condition = directive.strip_prefix("else ").unwrap_or(directive);
+        let mut words = condition.split_whitespace();
+        matches!(words.next(), Some("ifdef" | "ifndef" | "if")).then(|| words.next())?
+    });
+    let values = text.split("#{").skip(1);
+    let values = values.filter_map(|rest| rest.split('}').next());
+    conditions.chain(values).collect()
+}
+
+/// What no list has is compiled by none of these tests.
+#[test]
+fn every_definition_that_shaders_ask_for_is_listed() {
+    let entries = [lines::variants(), scene::variants(), materials::variants()].concat();
+    let entries = entries.into_iter().map(|(_, definitions)| definitions);
+    let fused = fused::variants().into_iter();
+    let all = entries.chain(fused).chain([toon_shaders::listed()]);
+    let mut listed: BTreeSet<&str> = all.flatten().map(|(name, _)| name).collect();
+    // `wgsl::module_with` sets it.
+    listed.insert("SAMPLES");
+    let read = |path: PathBuf| fs::read_to_string(path).expect("a shader");
+    let texts: Vec<String> = files().into_iter().map(read).collect();
+    let names: BTreeSet<&str> = texts.iter().flat_map(|text| asked(text)).collect();
+    assert!(names.len() > 100, "the check sees {names:?}");
+    let missing: Vec<_> = names.difference(&listed).collect();
+    assert!(missing.is_empty(), "no list has {missing:?}");
 }

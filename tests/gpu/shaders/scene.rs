@@ -6,6 +6,10 @@ use super::{
     subsets,
 };
 
+pub fn variants() -> Vec<Variant> {
+    [depths(), objects()].concat()
+}
+
 /// A file with every subset of flags, beside others that are always set.
 fn with_subsets(
     file: &'static str,
