@@ -181,7 +181,7 @@ fn method(least: f64, unstyled: &Measures) -> String {
          | nearest style | the mean of FLIP to the style that differs least (0: the same picture, 1: black and white) | at least {LEAST_APART}; the least is {least:.3} |\n\
          | ink | the part of the picture that is darker than a quarter of the display's range | |\n\
          | clipped | the part that is black, and the part that is white | {:.0} % together, but for white on the white paper of `manga-page` and `hard-boiled` |\n\
-         | contrast | pixels of geometry are divided by distance into three planes of the same size; the mean difference of the mean colours of near and middle, and of middle and far, in CIELAB | at least {LEAST_CONTRAST}, which is just noticeable; unstyled {:.1} |\n\
+         | contrast | pixels of geometry are divided by distance into three planes of the same size; the mean difference of the mean colors of near and middle, and of middle and far, in CIELAB | at least {LEAST_CONTRAST}, which is just noticeable; unstyled {:.1} |\n\
          | flicker | while the camera goes around the scene by a quarter of a pixel a frame for {FRAMES} frames: by how many codes of 255 a pixel jumps and jumps back in the next frame, on average. Time stands still: lines that are drawn anew by the clock do not count | {MOST_FLICKER} code more than unstyled, {:.2} |\n\
          | fragments | the part of the pixels of outlines that are in pieces of fewer than eight pixels | {:.0} % |\n",
         percent(MOST_CLIPPED),

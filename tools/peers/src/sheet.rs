@@ -116,7 +116,7 @@ fn share_light(world: &mut World) {
     }
 }
 
-/// Gives all meshes that crate's material: colours as they are, darker shades, its own lines.
+/// Gives all meshes that crate's material: colors as they are, darker shades, its own lines.
 fn wear_mtoon(world: &mut World) {
     crate::give_uvs(world);
     let mut worn = world.query::<(Entity, &MeshMaterial3d<StandardMaterial>)>();
@@ -141,7 +141,7 @@ fn wear_mtoon(world: &mut World) {
     }
 }
 
-/// The colour of shade: three fifths of the light.
+/// The color of shade: three fifths of the light.
 fn shade(color: Color) -> Color {
     let light = color.to_linear();
     Color::linear_rgb(0.6 * light.red, 0.6 * light.green, 0.6 * light.blue)
