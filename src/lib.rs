@@ -70,6 +70,7 @@ pub mod depth;
 pub mod diagnostics;
 pub mod effect;
 pub mod effects;
+mod files;
 mod fused;
 mod gpu;
 pub mod lines;

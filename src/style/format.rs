@@ -10,11 +10,14 @@ use serde::{
 };
 use thiserror::Error;
 
-use super::{
-    ComicStyle,
-    renamed::{self, Upgraded},
+use super::ComicStyle;
+use crate::{
+    effect::{AnyEffect, EffectRegistry, EffectType, names::FILE_KEYS},
+    files::{
+        renamed::{self, Upgraded},
+        ron_options, written,
+    },
 };
-use crate::effect::{AnyEffect, EffectRegistry, EffectType, names::FILE_KEYS};
 
 /// Why a style was not read or written.
 #[derive(Debug, Error)]
@@ -63,19 +66,6 @@ pub struct ReadStyle {
     pub style: ComicStyle,
     /// What to rename in the text, if it has the previous version of the format.
     pub advice: Option<String>,
-}
-
-/// How all settings are written.
-pub(crate) fn ron_options() -> ron::Options {
-    ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
-}
-
-/// The text of settings; an error says why they have none.
-pub(crate) fn written<T: Serialize>(settings: &T) -> Result<String, String> {
-    let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-    let text = ron_options().to_string_pretty(settings, pretty);
-    let text = text.map_err(|error| error.to_string())?;
-    Ok(text + "\n")
 }
 
 impl ComicStyle {

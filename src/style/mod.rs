@@ -2,10 +2,9 @@
 
 mod apply;
 mod blend;
-pub(crate) mod format;
+mod format;
 mod layer;
 pub mod presets;
-pub(crate) mod renamed;
 #[cfg(test)]
 mod tests;
 mod transition;

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::ToonLight;
-use crate::style::{
-    format,
+use crate::files::{
+    self,
     renamed::{self, Upgraded},
 };
 
@@ -204,7 +204,7 @@ impl ToonShading {
     /// # Errors
     /// [`ToonShadingError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ToonShadingError> {
-        format::written(self).map_err(|message| ToonShadingError::Write { message })
+        files::written(self).map_err(|message| ToonShadingError::Write { message })
     }
 }
 
@@ -215,7 +215,7 @@ fn read(text: &str) -> Result<(ToonShading, Option<String>), ToonShadingError> {
         None | Some(VERSION) => Upgraded::unchanged(text),
         Some(found) => return Err(ToonShadingError::Version { found }),
     };
-    match format::ron_options().from_str(&current.text) {
+    match files::ron_options().from_str(&current.text) {
         Ok(shading) => Ok((shading, current.advice())),
         Err(error) => Err(ToonShadingError::Syntax {
             line: error.span.start.line,

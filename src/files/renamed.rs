@@ -6,7 +6,7 @@ use std::{fmt::Write, ops::Range};
 pub(crate) type Renamed = &'static [(&'static str, &'static str, &'static str)];
 
 /// What version 3 of style files renamed.
-pub(super) const STYLE: Renamed = &[
+pub(crate) const STYLE: Renamed = &[
     ("abstraction", "near", "at_near"),
     ("abstraction", "far", "at_far"),
     ("abstraction", "by", "granularity"),
@@ -285,7 +285,7 @@ mod tests {
         ColorHarmony, ComicStyle, DepthLayers, Outlines,
         effect::EffectRegistry,
         effects::{Equations, HarmonyCurve},
-        style::{ComicStyleError, format},
+        style::{ComicStyleError, ReadStyle},
     };
 
     const OLD: &str = r##"// specks in a comment stays
@@ -299,7 +299,7 @@ mod tests {
 )
 "##;
 
-    fn read(text: &str) -> Result<format::ReadStyle, ComicStyleError> {
+    fn read(text: &str) -> Result<ReadStyle, ComicStyleError> {
         EffectRegistry::built_in().read_style(text)
     }
 
