@@ -212,6 +212,8 @@ pub struct EffectType {
     pub half_box: bool,
     /// [`Effect::AUX_SCALAR`].
     pub aux_scalar: bool,
+    /// [`Effect::DIVIDES_TONES`].
+    pub divides_tones: bool,
     /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
     /// Creates an effect with default settings.
@@ -246,6 +248,7 @@ impl EffectType {
                 view: E::VIEW,
                 half_box: E::HALF_BOX,
                 aux_scalar: E::AUX_SCALAR,
+                divides_tones: E::DIVIDES_TONES,
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,

@@ -101,6 +101,11 @@ pub trait Effect:
     /// number. Default: false.
     const AUX_SCALAR: bool = false;
 
+    /// Whether the effect divides the picture into few tones, where the engine's dither shows as
+    /// dots: [`StyleDither::Auto`](crate::style::StyleDither::Auto) then turns it off. Default:
+    /// false.
+    const DIVIDES_TONES: bool = false;
+
     /// The settings in the layout of the WGSL struct; [`NoUniform`] if the function
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;

@@ -5,15 +5,24 @@ use bevy::{
     prelude::*,
 };
 
-use super::{ComicStyle, ComicStyleError};
+use super::{ComicStyle, ComicStyleError, StyleTransition, StyleVolume, presets};
 use crate::effect::EffectRegistry;
 
 /// Gives a camera the style of a [`ComicStyle`] asset.
 ///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_comics::presets;
+/// # fn setup(mut commands: Commands) {
+/// commands.spawn((Camera3d::default(), presets::SATURDAY_MORNING.comic()));
+/// # }
+/// ```
+///
 /// The style is [applied](ComicStyle::apply) to the camera when the asset has loaded, and again
-/// whenever it changes. Between those moments the camera's components may be edited. If a file
-/// becomes unreadable, the camera keeps its last style. Removing this component restores the
-/// camera's own style.
+/// whenever it changes; so are its [`camera`](ComicStyle::camera) and its
+/// [`scene`](ComicStyle::scene). Between those moments the camera's components may be edited. If a
+/// file becomes unreadable, the camera keeps its last style. Removing this component restores the
+/// camera's own style, its other settings, and the materials of the scene.
 ///
 /// A scene in code can name a path: the component's template takes one in the
 /// handle's place.
@@ -51,6 +60,27 @@ pub(super) fn apply_styles(
             && let Ok(mut camera) = commands.get_entity(entity)
         {
             style.apply(&mut camera);
+        }
+    }
+}
+
+/// Adds the presets whose [handles](presets::Preset::handle) are used: no asset server loads them.
+pub(super) fn add_presets(
+    comics: Query<&Comic, Changed<Comic>>,
+    volumes: Query<&StyleVolume, Changed<StyleVolume>>,
+    transitions: Query<&StyleTransition, Added<StyleTransition>>,
+    mut styles: ResMut<Assets<ComicStyle>>,
+) {
+    let comics = comics.iter().map(|comic| &comic.0);
+    let volumes = volumes.iter().map(|volume| &volume.style);
+    let targets = transitions.iter().filter_map(StyleTransition::asset);
+    for handle in comics.chain(volumes).chain(targets) {
+        if handle.is_uuid()
+            && !styles.contains(handle)
+            && let Some(preset) = presets::of(handle)
+        {
+            // Only an index that is gone is an error.
+            let _ = styles.insert(handle, preset.style());
         }
     }
 }

@@ -20,6 +20,8 @@ impl ComicStyle {
     ///   the map does so.
     /// * Settings that cannot be interpolated switch at `t = 0.5`: the strokes of a sketch and
     ///   their rate, `despike`, `locked`.
+    /// * What a style does besides is no part of this: settings of the camera switch at `t = 1`, and
+    ///   so does what of a scene is no number of a light.
     ///
     /// Both count as complete styles. For a partial one, lay it
     /// [`over`](Self::over) the camera's own style first.
@@ -59,6 +61,12 @@ impl ComicStyle {
             depth_map: (a.depth_map.is_some() || b.depth_map.is_some())
                 .then(|| mixed_map(map_a, map_b, t)),
             effects,
+            camera: a.camera,
+            #[cfg(feature = "toon")]
+            scene: match (&a.scene, &b.scene) {
+                (Some(a), Some(b)) => Some(a.mixed(b, t)),
+                (scene, _) => scene.clone(),
+            },
             ..Self::new()
         }
         // Rounding takes interpolated numbers out of their ranges, and what is left of a faded

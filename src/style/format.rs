@@ -3,6 +3,8 @@
 use std::fmt;
 
 use bevy::log::warn;
+#[cfg(feature = "toon")]
+use serde::ser::Error as _;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeSeed, Error, MapAccess, Visitor},
@@ -10,7 +12,9 @@ use serde::{
 };
 use thiserror::Error;
 
-use super::ComicStyle;
+use super::{ComicStyle, StyleCamera};
+#[cfg(feature = "toon")]
+use crate::toon::StyleScene;
 use crate::{
     effect::{AnyEffect, EffectRegistry, EffectType, names::FILE_KEYS},
     files::{
@@ -58,6 +62,11 @@ pub enum ComicStyleError {
 /// The version of the file format that this crate writes. It reads the previous version too.
 const VERSION: u32 = 3;
 const PREVIOUS: u32 = VERSION - 1;
+
+/// No entry of a file names another one.
+#[cfg(feature = "toon")]
+const IMAGE: &str =
+    "the light of a scene has a `ramp_map`: put it into a shading file, for a `ToonScene`";
 
 /// A style that was read from a text, see [`EffectRegistry::read_style`].
 #[derive(Clone, Debug)]
@@ -145,7 +154,18 @@ fn parse(
 impl Serialize for ComicStyle {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let off = if self.partial { self.off.len() } else { 0 };
-        let optional = usize::from(self.partial) + usize::from(self.depth_map.is_some());
+        let sets_camera = self.camera != StyleCamera::default();
+        #[cfg(feature = "toon")]
+        let scene = self.scene.as_ref();
+        #[cfg(not(feature = "toon"))]
+        let scene: Option<&()> = None;
+        let optional = [
+            self.partial,
+            self.depth_map.is_some(),
+            sets_camera,
+            scene.is_some(),
+        ];
+        let optional: usize = optional.into_iter().map(usize::from).sum();
         let entries = 2 + optional + self.effects().count() + off;
         let mut file = serializer.serialize_struct("ComicStyle", entries)?;
         file.serialize_field("version", &VERSION)?;
@@ -155,6 +175,16 @@ impl Serialize for ComicStyle {
         }
         if self.depth_map.is_some() {
             file.serialize_field("depth_map", &self.depth_map)?;
+        }
+        if sets_camera {
+            file.serialize_field("camera", &self.camera)?;
+        }
+        if let Some(scene) = scene {
+            #[cfg(feature = "toon")]
+            if scene.names_an_image() {
+                return Err(S::Error::custom(IMAGE));
+            }
+            file.serialize_field("scene", &Some(scene))?;
         }
         for effect in self.effects() {
             // An `Option` in the file, as `None` may be written.
@@ -207,6 +237,20 @@ impl<'de> Visitor<'de> for StyleSeed<'_> {
                 "name" => style.name = map.next_value()?,
                 "partial" => style.partial = map.next_value()?,
                 "depth_map" => style.depth_map = map.next_value()?,
+                "camera" => style.camera = map.next_value()?,
+                #[cfg(feature = "toon")]
+                "scene" => {
+                    let scene: Option<StyleScene> = map.next_value()?;
+                    if scene.as_ref().is_some_and(StyleScene::names_an_image) {
+                        return Err(M::Error::custom(IMAGE));
+                    }
+                    style.scene = scene;
+                }
+                // It lights materials that are not there.
+                #[cfg(not(feature = "toon"))]
+                "scene" => {
+                    map.next_value::<serde::de::IgnoredAny>()?;
+                }
                 name => {
                     let Some(effect) = self.0.iter().find(|effect| effect.name == name) else {
                         return Err(M::Error::custom(self.unknown(name)));

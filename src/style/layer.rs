@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::ComicStyle;
+use super::{Comic, ComicStyle, camera::set_camera};
 use crate::{
     depth::DepthMap,
     effect::{EffectRegistry, EffectType},
@@ -71,6 +71,11 @@ impl ComicStyle {
         };
         look.name.clone_from(&self.name);
         look.depth_map = self.depth_map.or(base.depth_map);
+        look.camera = self.camera.over(look.camera);
+        #[cfg(feature = "toon")]
+        if self.scene.is_some() {
+            look.scene.clone_from(&self.scene);
+        }
         for effect in self.effects.iter() {
             look.insert_any(effect.boxed());
         }
@@ -84,7 +89,8 @@ impl ComicStyle {
     }
 
     /// The components of a camera, as a complete style without a name: its depth
-    /// map and those of its effects that `registry` knows.
+    /// map and those of its effects that `registry` knows. `camera` and `scene` are those of the
+    /// style that was applied to it.
     pub fn of(camera: EntityRef, registry: &EffectRegistry) -> Self {
         let mut style = Self {
             depth_map: camera.get().copied(),
@@ -95,13 +101,34 @@ impl ComicStyle {
                 style.insert_any(effect.boxed());
             }
         }
+        if let Some(layer) = camera.get::<StyleLayer>() {
+            style.take_surroundings(&layer.written);
+        }
         style
+    }
+
+    /// Takes what another style has besides effects and a depth map.
+    fn take_surroundings(&mut self, other: &Self) {
+        self.camera = other.camera;
+        #[cfg(feature = "toon")]
+        self.scene.clone_from(&other.scene);
+    }
+
+    fn has_same_surroundings(&self, other: &Self) -> bool {
+        #[cfg(feature = "toon")]
+        let is_same_scene = self.scene == other.scene;
+        #[cfg(not(feature = "toon"))]
+        let is_same_scene = true;
+        self.camera == other.camera && is_same_scene
     }
 
     /// Applies the style to a camera, over the camera's own style and in place
     /// of the style that was applied before: inserts and removes the components
     /// of the effects that the app knows. Between calls the components belong to
     /// the game and may be edited.
+    ///
+    /// [`camera`](Self::camera) and [`scene`](Self::scene) apply to cameras that have a [`Comic`],
+    /// which may be empty.
     pub fn apply(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| style.lay_over(&mut camera));
@@ -117,6 +144,7 @@ impl ComicStyle {
         let own = own_style(camera);
         if camera.take::<StyleLayer>().is_some() {
             own.write(camera);
+            set_camera(camera, &Self::new());
         }
     }
 
@@ -126,6 +154,7 @@ impl ComicStyle {
         camera.queue(move |mut camera: EntityWorldMut| {
             camera.remove::<StyleLayer>();
             style.write(&mut camera);
+            set_camera(&mut camera, &Self::new());
         });
     }
 
@@ -177,6 +206,9 @@ impl ComicStyle {
         if before.depth_map != after.depth_map {
             self.depth_map = after.depth_map;
         }
+        if !before.has_same_surroundings(after) {
+            self.take_surroundings(after);
+        }
     }
 
     /// Makes the camera's components those of this style, as a complete one.
@@ -204,6 +236,9 @@ pub(super) fn lay_over(
     written: ComicStyle,
 ) {
     written.write(camera);
+    if camera.contains::<Comic>() {
+        set_camera(camera, &written);
+    }
     camera.insert(StyleLayer {
         own,
         style,

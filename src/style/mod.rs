@@ -2,6 +2,7 @@
 
 mod apply;
 mod blend;
+mod camera;
 mod format;
 mod layer;
 pub mod presets;
@@ -15,17 +16,21 @@ use std::collections::BTreeSet;
 use bevy::{camera::visibility::VisibilitySystems, prelude::*};
 
 pub use apply::{Comic, ComicTemplate};
+pub use camera::{StyleCamera, StyleDither};
 pub use format::{ComicStyleError, ReadStyle};
 pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
 pub use volume::{InStyleVolumes, StyleVolume};
 
+#[cfg(feature = "toon")]
+pub use crate::toon::StyleScene;
 use crate::{
     depth::DepthMap,
     effect::{AnyEffect, Effect, EffectSet},
 };
 
-/// The effects of a camera and its depth map, in one asset.
+/// The effects of a camera, its depth map, and what goes with them: settings of the camera, and the
+/// light on the materials of the scene.
 ///
 /// ```
 /// use bevy_comics::{ComicStyle, Desaturation, Outlines};
@@ -61,6 +66,7 @@ use crate::{
 ///   [`turn_off`](Self::turn_off), turns one off.
 /// * Both leave the camera's own [`DepthMap`] alone unless they mention
 ///   `depth_map`.
+/// * A partial style without a `scene` keeps that of the style below it.
 ///
 /// Effects are the smallest unit: a style that mentions `outlines` sets all fields of
 /// [`Outlines`](crate::Outlines). Applying another style replaces the last one.
@@ -76,6 +82,13 @@ pub struct ComicStyle {
     pub partial: bool,
     /// The depth map. `None` leaves the camera's own alone. Default: `None`.
     pub depth_map: Option<DepthMap>,
+    /// What cameras with a [`Comic`] have besides effects: dither, samples, tonemapping. Default:
+    /// [`StyleCamera::default`].
+    pub camera: StyleCamera,
+    /// What cameras with a [`Comic`] do to the meshes that they see. `None` leaves them alone.
+    /// Default: `None`.
+    #[cfg(feature = "toon")]
+    pub scene: Option<StyleScene>,
     /// The effects. Default: none.
     pub effects: EffectSet,
     /// Names of the effects that a partial style turns off. A complete style
@@ -117,6 +130,16 @@ impl ComicStyle {
     pub fn with_depth_map(self, map: DepthMap) -> Self {
         Self {
             depth_map: Some(map),
+            ..self
+        }
+    }
+
+    /// The same style with this scene.
+    #[cfg(feature = "toon")]
+    #[must_use]
+    pub fn with_scene(self, scene: StyleScene) -> Self {
+        Self {
+            scene: Some(scene),
             ..self
         }
     }
@@ -184,6 +207,8 @@ impl ComicStyle {
         Self {
             depth_map: self.depth_map.map(DepthMap::sanitized),
             effects,
+            #[cfg(feature = "toon")]
+            scene: self.scene.clone().map(StyleScene::sanitized),
             ..self.clone()
         }
     }
@@ -196,6 +221,7 @@ impl Plugin for StylePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleTransition>()
             .register_type::<Comic>()
+            .register_type::<StyleCamera>()
             .register_type::<StyleVolume>()
             .register_type::<InStyleVolumes>();
     }
@@ -210,7 +236,12 @@ impl StylePlugin {
             .init_asset_loader::<apply::StyleLoader>()
             .add_systems(
                 Update,
-                (apply::apply_styles, transition::run_transitions).chain(),
+                (
+                    apply::add_presets,
+                    apply::apply_styles,
+                    transition::run_transitions,
+                )
+                    .chain(),
             )
             .add_systems(
                 PostUpdate,

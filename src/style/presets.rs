@@ -4,7 +4,8 @@
 //! # use bevy::prelude::*;
 //! # use bevy_comics::{Comic, StyleTransition, presets};
 //! # fn setup(mut commands: Commands, assets: Res<AssetServer>, camera: Single<Entity, With<Camera3d>>) {
-//! // As an asset: the camera follows it.
+//! commands.entity(*camera).insert(presets::NOIR.comic());
+//! // By path, as a file of the game.
 //! commands.entity(*camera).insert(Comic(assets.load(presets::NOIR.path())));
 //! // As a value.
 //! commands.entity(*camera).insert(StyleTransition::to(presets::NOIR.style(), 0.4));
@@ -14,11 +15,15 @@
 //! They are the files of `assets/styles/`, part of the binary: a game copies
 //! nothing.
 
-use std::{fmt, path::Path};
+use std::{fmt, marker::PhantomData, path::Path};
 
-use bevy::{app::App, asset::io::embedded::EmbeddedAssetRegistry, log::error};
+use bevy::{
+    app::App,
+    asset::{Handle, io::embedded::EmbeddedAssetRegistry, uuid::Uuid},
+    log::error,
+};
 
-use super::ComicStyle;
+use super::{Comic, ComicStyle};
 
 /// A style that comes with the crate.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -48,6 +53,25 @@ impl Preset {
         self.source
     }
 
+    /// The whole style, for a camera: its effects, its settings of the camera, and its light on the
+    /// materials of the scene.
+    pub fn comic(self) -> Comic {
+        Comic(self.handle())
+    }
+
+    /// The style as an asset. It is there in the frame in which a camera, a volume or a transition
+    /// first has it.
+    pub fn handle(self) -> Handle<ComicStyle> {
+        // FNV-1a of 128 bits (Fowler, Noll and Vo 1991).
+        let hash = self.path.bytes().fold(
+            0x6c62_272e_07bb_0142_62b8_2175_6295_c58d,
+            |hash: u128, byte| {
+                (hash ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b)
+            },
+        );
+        Handle::Uuid(Uuid::from_u128(hash), PhantomData)
+    }
+
     /// The style as a value.
     pub fn style(self) -> ComicStyle {
         ComicStyle::from_ron(self.source).unwrap_or_else(|error| {
@@ -73,6 +97,13 @@ impl fmt::Debug for Preset {
 /// The preset of this name, such as `"ligne-claire"`.
 pub fn find(name: &str) -> Option<Preset> {
     ALL.iter().copied().find(|preset| preset.name == name)
+}
+
+/// The preset of a [handle](Preset::handle).
+pub(super) fn of(handle: &Handle<ComicStyle>) -> Option<Preset> {
+    ALL.iter()
+        .copied()
+        .find(|preset| preset.handle() == *handle)
 }
 
 macro_rules! presets {
@@ -266,6 +297,7 @@ mod tests {
     fn names_are_found_and_unique() {
         for preset in ALL {
             assert_eq!(find(preset.name()), Some(*preset));
+            assert_eq!(of(&preset.handle()), Some(*preset));
         }
         assert_eq!(find("no-such-preset"), None);
     }

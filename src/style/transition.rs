@@ -115,6 +115,14 @@ impl StyleTransition {
         }
     }
 
+    /// The asset that it goes to, if it goes to one.
+    pub(super) fn asset(&self) -> Option<&Handle<ComicStyle>> {
+        match &self.target {
+            StyleTarget::Style(_) => None,
+            StyleTarget::Asset(handle) => Some(handle),
+        }
+    }
+
     /// How much of the time has passed, 0 to 1.
     pub fn progress(&self) -> f32 {
         if self.seconds > 0.0 {
@@ -175,10 +183,10 @@ pub(super) fn run_transitions(
             transition.elapsed += if transition.real_time { real } else { game };
         }
         if transition.progress() >= 1.0 {
-            target.apply(&mut camera);
             if let StyleTarget::Asset(handle) = &transition.target {
                 camera.insert(Comic(handle.clone()));
             }
+            target.apply(&mut camera);
             camera.remove::<StyleTransition>();
             commands.trigger(StyleTransitionFinished { entity });
         } else if let Some(start) = &transition.start {

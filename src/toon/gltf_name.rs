@@ -24,14 +24,15 @@ pub(super) fn name_meshes(
     meshes: Query<EntityRef, Nameless>,
     types: Option<Res<AppTypeRegistry>>,
 ) {
-    let Some(types) = types.filter(|_| roots.any_has_overrides()) else {
+    let Some(types) = types.filter(|_| roots.any_reads_names()) else {
         return;
     };
     let types = types.read();
     for mesh in meshes.iter_many(&changes.meshes) {
-        let scene = roots.nearest(mesh.id()).map(|(_, scene)| scene);
-        let needs_name = scene.is_some_and(|scene| !scene.overrides.is_empty());
-        if needs_name && let Some(name) = gltf_name(mesh, &types) {
+        let lit_by = roots.of(mesh.id());
+        if lit_by.is_some_and(|(_, lit_by)| lit_by.reads_names())
+            && let Some(name) = gltf_name(mesh, &types)
+        {
             name_mesh(&mut commands, mesh.id(), name);
         }
     }

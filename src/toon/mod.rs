@@ -21,6 +21,7 @@ mod rim_shader;
 mod scene;
 mod shading;
 mod smooth;
+mod style_scene;
 mod stylized_highlight;
 mod uniform;
 mod vertex;
@@ -43,8 +44,10 @@ pub use ramp::{Ramp, RampBlend, RampMode};
 pub use ramp_map::RampMap;
 pub use ramp_stop::RampStop;
 pub use rim::{Rim, RimWidth};
+pub(crate) use scene::CameraScene;
 pub use scene::ToonScene;
 pub use shading::{ToonShading, ToonShadingError, ToonShadingHandle, ToonShadingHandleTemplate};
+pub use style_scene::StyleScene;
 pub use stylized_highlight::{HighlightFrame, HighlightShape, StylizedHighlight};
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
@@ -54,6 +57,7 @@ impl Plugin for ToonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ToonLight>()
             .register_type::<ToonScene>()
+            .register_type::<StyleScene>()
             .register_type::<TonalArtMap>()
             .register_type::<MaterialName>()
             .register_type::<ToonShadingHandle>();
@@ -140,6 +144,7 @@ fn add_material(app: &mut App) -> bool {
                 (scene::apply_shadings, material::keep_forward).chain(),
                 ignored::warn_of_ignored,
                 ignored::warn_of_reflections,
+                scene::warn_of_missing_shadows,
                 view_range::ask_for_range,
                 (smooth::begin_smoothing, smooth::finish_smoothing).chain(),
             ),

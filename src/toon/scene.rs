@@ -1,16 +1,25 @@
 //! A component that draws a whole scene with the toon material.
 
+mod cameras;
 mod copies;
 
+use std::borrow::Cow;
+
 use bevy::{
+    camera::visibility::RenderLayers,
     ecs::{entity::EntityHashSet, system::SystemParam},
     platform::collections::{HashMap, HashSet},
     prelude::*,
 };
 
-use super::{MaterialName, ToonLight, ToonMaterial, ToonShading, ToonShadingHandle, shading};
+use super::{
+    MaterialName, StyleScene, ToonLight, ToonMaterial, ToonShading, ToonShadingHandle, shading,
+};
+use cameras::{CameraScenes, StyledCameras};
 use copies::{Copies, Materials};
 
+pub(crate) use cameras::CameraScene;
+pub(super) use cameras::warn_of_missing_shadows;
 pub(super) use copies::follow_materials;
 
 /// Draws an entity and all its descendants with [`ToonMaterial`]. Put it on the
@@ -73,10 +82,10 @@ impl ToonScene {
         self
     }
 
-    /// Where the toon material of a mesh comes from: the entity with the `ToonScene`, the standard
-    /// material that the scene has replaced, and the shading that it has chosen for the mesh, loaded
-    /// or not. `None` if no scene draws the mesh. Edits of the standard material stay; those of the
-    /// toon copy are lost when the scene writes it again.
+    /// Where the toon material of a mesh comes from: the entity with the `ToonScene`, or the camera
+    /// with the [`Comic`](crate::Comic); the standard material that was replaced; and the shading
+    /// that was chosen for the mesh, loaded or not. `None` if neither lights the mesh. Edits of the
+    /// standard material stay; those of the toon copy are lost when it is written again.
     pub fn original<'w>(
         mesh: EntityRef<'w>,
     ) -> Option<(
@@ -86,7 +95,7 @@ impl ToonScene {
     )> {
         let original = mesh.get::<Original>()?;
         let shading = original.shading.as_ref();
-        Some((original.root, &original.material, shading))
+        Some((original.root.0, &original.material, shading))
     }
 
     /// The shading of the scene for a name.
@@ -96,12 +105,15 @@ impl ToonScene {
     }
 }
 
-/// On a converted mesh: its standard material, the root that converted it, and the shading that was
-/// chosen for it.
+/// A light: an entity with a [`ToonScene`], with 0, or a camera with a [`CameraScene`], with 1.
+type RootKey = (Entity, usize);
+
+/// On a converted mesh: its standard material, the light that it was converted for, and the shading
+/// that was chosen for it.
 #[derive(Component, PartialEq)]
 pub(super) struct Original {
     material: Handle<StandardMaterial>,
-    root: Entity,
+    root: RootKey,
     shading: Option<Handle<ToonShading>>,
 }
 
@@ -119,6 +131,7 @@ pub(super) struct SceneChanges {
 /// Notes changes. Without any, a frame does nothing for each mesh.
 pub(super) fn build(app: &mut App) {
     app.init_resource::<Copies>()
+        .init_resource::<StyledCameras>()
         .init_resource::<SceneChanges>()
         .add_observer(note::<Insert, MeshMaterial3d<StandardMaterial>>)
         .add_observer(note::<Insert, ChildOf>)
@@ -130,51 +143,127 @@ fn note<E: EntityEvent, B: Bundle>(on: On<E, B>, mut changes: ResMut<SceneChange
     changes.subtrees.insert(on.event_target());
 }
 
-/// The scenes, and the way to them.
+/// What lights meshes, and the way to it.
 #[derive(SystemParam)]
 pub(super) struct SceneRoots<'w, 's> {
-    roots: Query<'w, 's, (Entity, Ref<'static, ToonScene>)>,
+    roots: Query<'w, 's, (Entity, &'static ToonScene)>,
     parents: Query<'w, 's, &'static ChildOf>,
+    layers: Query<'w, 's, &'static RenderLayers>,
+    cameras: Query<'w, 's, &'static CameraScene>,
+    styled: Res<'w, StyledCameras>,
+}
+
+/// The settings of what lights a mesh.
+pub(super) enum LitBy<'a> {
+    Scene(&'a ToonScene),
+    Camera,
+}
+
+impl LitBy<'_> {
+    /// Whether they differ by the names of materials.
+    pub(super) fn reads_names(&self) -> bool {
+        match self {
+            Self::Scene(scene) => !scene.overrides.is_empty(),
+            Self::Camera => false,
+        }
+    }
+
+    /// The shading of a mesh: its own, or what the scene says for its name.
+    fn shading(
+        &self,
+        own: Option<&ToonShadingHandle>,
+        name: Option<&MaterialName>,
+    ) -> Option<Handle<ToonShading>> {
+        let named = || match self {
+            Self::Scene(scene) => scene.shading_of(name),
+            Self::Camera => None,
+        };
+        own.map(|own| &own.0).or_else(named).cloned()
+    }
 }
 
 impl SceneRoots<'_, '_> {
-    /// The nearest entity with a [`ToonScene`] among an entity and its ancestors.
-    pub(super) fn nearest(&self, entity: Entity) -> Option<(Entity, Ref<'_, ToonScene>)> {
-        let above = self.parents.iter_ancestors(entity);
-        std::iter::once(entity)
+    /// What lights a mesh: the nearest entity with a [`ToonScene`] among it and its ancestors, else
+    /// the first camera that sees it.
+    pub(super) fn of(&self, mesh: Entity) -> Option<(RootKey, LitBy<'_>)> {
+        let above = self.parents.iter_ancestors(mesh);
+        let nearest = std::iter::once(mesh)
             .chain(above)
-            .find_map(|e| self.roots.get(e).ok())
+            .find_map(|e| self.roots.get(e).ok());
+        if let Some((root, scene)) = nearest {
+            return Some(((root, 0), LitBy::Scene(scene)));
+        }
+        let layers = self.layers.get(mesh).ok().unwrap_or_default();
+        let mut seeing = self.styled.seeing(layers).map(|styled| styled.camera);
+        let camera = seeing.next()?;
+        let scene = self.scene_of(camera);
+        if let Some(other) = seeing.find(|other| self.scene_of(*other) != scene) {
+            warn_once!(
+                "the styles of {camera} and {other} light the same meshes: that of {camera} applies, \
+                 whose order is lower"
+            );
+        }
+        Some(((camera, 1), LitBy::Camera))
     }
 
-    pub(super) fn any_has_overrides(&self) -> bool {
-        self.roots.iter().any(|(_, s)| !s.overrides.is_empty())
+    fn scene_of(&self, camera: Entity) -> Option<&StyleScene> {
+        self.cameras.get(camera).ok().map(|scene| &scene.0)
+    }
+
+    pub(super) fn any_reads_names(&self) -> bool {
+        (self.roots.iter()).any(|(_, scene)| LitBy::Scene(scene).reads_names())
     }
 }
 
-/// Notes the settings of scenes that changed, and finds the meshes that may have another material.
+/// Notes the settings of scenes and cameras that changed, and finds the meshes that may have another
+/// material.
 pub(super) fn find_meshes(
     tuned: Query<(Entity, &ToonScene), Changed<ToonScene>>,
     scenes: Query<(), With<ToonScene>>,
     mut removed: RemovedComponents<ToonScene>,
+    mut cameras: CameraScenes,
     children: Query<&Children>,
-    meshes: Query<(), Or<(With<MeshMaterial3d<StandardMaterial>>, With<Original>)>>,
+    meshes: Query<Entity, Or<(With<MeshMaterial3d<StandardMaterial>>, With<Original>)>>,
     (mut copies, mut changes): (ResMut<Copies>, ResMut<SceneChanges>),
 ) {
     let changes = &mut *changes;
     changes.meshes.clear();
     copies.begin();
-    if scenes.is_empty() && copies.is_unused() {
+    let mut all = cameras.update();
+    if scenes.is_empty() && cameras.is_empty() && copies.is_unused() {
         changes.subtrees.clear();
         return;
     }
     for root in removed.read().filter(|root| !scenes.contains(*root)) {
-        copies.forget(root);
+        copies.forget((root, 0));
     }
-    copies.rewrite(tuned.iter());
-    for (root, scene) in &tuned {
-        if copies.update(root, scene) {
-            changes.subtrees.insert(root);
+    if all {
+        copies.keep(|root| root.1 == 0 || cameras.has(root));
+    }
+    let of_scenes = tuned
+        .iter()
+        .map(|(root, scene)| ((root, 0), Cow::Borrowed(scene)));
+    let of_cameras = cameras
+        .lights(all)
+        .into_iter()
+        .map(|(root, scene)| (root, Cow::Owned(scene)));
+    let lights: Vec<(RootKey, Cow<ToonScene>)> = of_scenes.chain(of_cameras).collect();
+    copies.rewrite(lights.iter().map(|(root, scene)| (*root, &**scene)));
+    for (root, scene) in &lights {
+        if copies.update(*root, scene) {
+            match root {
+                (scene, 0) => {
+                    changes.subtrees.insert(*scene);
+                }
+                _ => all = true,
+            }
         }
+    }
+    if all {
+        changes.subtrees.clear();
+        changes.waiting.clear();
+        changes.meshes.extend(&meshes);
+        return;
     }
     let mut below: Vec<Entity> = changes.subtrees.drain().collect();
     let mut visited = EntityHashSet::default();
@@ -184,6 +273,9 @@ pub(super) fn find_meshes(
         }
     }
     visited.extend(changes.waiting.drain());
+    if !cameras.is_empty() {
+        visited.extend(cameras.moved());
+    }
     changes
         .meshes
         .extend(visited.into_iter().filter(|mesh| meshes.contains(*mesh)));
@@ -194,17 +286,6 @@ type Said = (
     Option<&'static ToonShadingHandle>,
     Option<&'static MaterialName>,
 );
-
-/// The shading of a mesh: its own, or what the scene says for its name.
-fn choose(
-    scene: &ToonScene,
-    own: Option<&ToonShadingHandle>,
-    name: Option<&MaterialName>,
-) -> Option<Handle<ToonShading>> {
-    own.map(|own| &own.0)
-        .or_else(|| scene.shading_of(name))
-        .cloned()
-}
 
 type Dressed = (
     Option<&'static MeshMaterial3d<StandardMaterial>>,
@@ -238,7 +319,7 @@ impl SaidChanges<'_, '_> {
     }
 }
 
-/// Gives meshes below a scene their toon copies, and others their standard materials.
+/// Gives meshes that are lit their toon copies, and others their standard materials.
 pub(super) fn convert(
     mut commands: Commands,
     mut changes: ResMut<SceneChanges>,
@@ -258,7 +339,7 @@ pub(super) fn convert(
             continue;
         };
         let mut mesh = commands.entity(entity);
-        let Some((root, scene)) = roots.nearest(entity) else {
+        let Some((root, lit_by)) = roots.of(entity) else {
             if original.is_some() {
                 mesh.remove::<(MeshMaterial3d<ToonMaterial>, Original)>()
                     .insert(MeshMaterial3d(source.clone()));
@@ -268,7 +349,7 @@ pub(super) fn convert(
         let chosen = Original {
             material: source.clone(),
             root,
-            shading: choose(&scene, own, name),
+            shading: lit_by.shading(own, name),
         };
         let Some(handle) = materials.shared(&chosen) else {
             changes.waiting.insert(entity);

@@ -13,6 +13,10 @@ use crate::prelude::*;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// A style with what no preset has.
+const SCENE: &str = "(version: 3, camera: (dither: On, msaa: Sample8, tonemapping: Off), \
+    scene: (light: (highlight: 0.5, ramp: (stops: [(at: 0.5, color: \"#336699\")], mode: PerLight))))";
+
 /// Styles of the previous version, with its names.
 const OLD: [&str; 3] = [
     r##"// specks in a comment stays
@@ -36,7 +40,8 @@ fn styles() -> impl Iterator<Item = String> {
     let aged = new
         .clone()
         .map(|text| text.replacen("version: 3", "version: 2", 1));
-    new.chain(aged).chain(OLD.map(str::to_owned))
+    let others = OLD.into_iter().chain([SCENE]);
+    new.chain(aged).chain(others.map(str::to_owned))
 }
 
 /// Panics if a value has a number that is not finite. `text` is room for its debug text.
@@ -56,6 +61,7 @@ fn assert_usable(style: &ComicStyle, view: &EffectContext, text: &mut String) {
     let used = style.sanitized();
     assert!(used.sanitized() == used, "{used:?}");
     assert_finite(&used.depth_map, text);
+    assert_finite(&used.scene, text);
     for effect in used.effects() {
         assert_finite(&effect, text);
         let lines = (effect.any_lines(), effect.any_line_modifiers(view));

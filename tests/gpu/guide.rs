@@ -142,6 +142,8 @@ mod reference {
     use bevy_comics::{
         ComicStyle, DepthMap,
         effect::{EffectRegistry, EffectType, FieldRange},
+        style::StyleCamera,
+        toon::StyleScene,
     };
 
     const HEAD: &str = "\
@@ -257,7 +259,10 @@ This page is made from the types by a test, which fails where the two differ.
     fn sections(info: &'static TypeInfo, page: &mut String) {
         let table = info.type_path_table();
         let is_ours = table.crate_name() == Some("bevy_comics");
-        if page.contains(&format!("\n## {}\n", table.short_path())) {
+        // Styles name no images.
+        if page.contains(&format!("\n## {}\n", table.short_path()))
+            || table.short_path() == "RampMap"
+        {
             return;
         }
         if is_ours {
@@ -319,7 +324,10 @@ This page is made from the types by a test, which fails where the two differ.
              | `name` | String | Title for people. |\n\
              | `partial` | bool | Whether effects that the file does not mention stay as the camera has \
              them. Default: `false`. |\n\
-             | `depth_map` | Option<DepthMap> | The depth map; the camera's own where absent. |\n"
+             | `depth_map` | Option<DepthMap> | The depth map; the camera's own where absent. |\n\
+             | `camera` | StyleCamera | What cameras with a `Comic` have besides effects. |\n\
+             | `scene` | Option<StyleScene> | What cameras with a `Comic` do to the meshes that they \
+             see; nothing where absent. |\n"
         );
         for effect in effects {
             let info = (effect.type_info)();
@@ -337,9 +345,11 @@ This page is made from the types by a test, which fails where the two differ.
         let effects = EffectRegistry::built_in().types();
         style(&mut page, &effects);
         sections(DepthMap::type_info(), &mut page);
+        sections(StyleCamera::type_info(), &mut page);
         for effect in effects {
             sections((effect.type_info)(), &mut page);
         }
+        sections(StyleScene::type_info(), &mut page);
         page
     }
 }

@@ -122,5 +122,6 @@ mod visible_detail;
 mod walls;
 mod warnings;
 mod weights;
+mod whole_style;
 mod wide_lines;
 mod window;

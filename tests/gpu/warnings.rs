@@ -12,6 +12,7 @@ use bevy::{
 use bevy_comics::{
     cameras::{RangeOf, StyleMask, overlay_camera},
     objects::Backdrop,
+    toon::StyleScene,
 };
 
 use crate::{
@@ -24,7 +25,7 @@ use crate::{
 const ALONE: &str = "WARNINGS_ALONE";
 
 /// Part of each warning: in the log once, however many frames are drawn.
-const WARNINGS: [&str; 10] = [
+const WARNINGS: [&str; 12] = [
     "is a Camera2d",
     "has no color target",
     "`LensDistortion` on",
@@ -34,6 +35,8 @@ const WARNINGS: [&str; 10] = [
     "`RangeOf`",
     "`LineEdge::Hard`",
     "`Backdrop`",
+    "light the same meshes",
+    "draws shadows, but no light has `shadow_maps_enabled`",
     "in more than 64 views, materials do not find the visible range",
 ];
 
@@ -106,7 +109,34 @@ fn draw_all() {
     small.world().despawn(deferred);
     small.insert((Outlines::PIXELS, Msaa::Sample4));
     small.headless.step(3);
+    light_twice(&mut small);
     draw_many_views(&mut small);
+}
+
+/// Two cameras have different lights for the same meshes. Nothing casts their shadows.
+fn light_twice(small: &mut Small) {
+    let world = small.world();
+    let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
+    let cameras: Vec<Entity> = cameras.iter(world).collect();
+    let (lit, others) = cameras.split_at(2);
+    for camera in others {
+        world.despawn(*camera);
+    }
+    let sun = world.spawn(DirectionalLight::default()).id();
+    for (camera, highlight) in lit.iter().zip([0.5, 1.0]) {
+        let light = ToonLight {
+            highlight,
+            ..default()
+        };
+        let style = ComicStyle::new().with_scene(StyleScene::new(light));
+        let mut commands = world.commands();
+        let mut camera = commands.entity(*camera);
+        camera.insert(Comic::default());
+        style.apply(&mut camera);
+    }
+    world.flush();
+    small.headless.step(34);
+    small.world().despawn(sun);
 }
 
 /// Where a view begins.

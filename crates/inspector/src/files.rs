@@ -32,12 +32,13 @@ struct OpenFile {
 impl OpenFile {
     /// Whether a camera's style is as the file has it.
     fn is_saved(&self, style: &ComicStyle) -> bool {
+        // Values out of range in the file are not a change by the user.
+        let file = on_camera(&self.saved, style).sanitized();
         let named = ComicStyle {
             name: self.saved.name.clone(),
-            ..style.clone()
+            ..with_surroundings(style.clone(), &file)
         };
-        // Values out of range in the file are not a change by the user.
-        named == on_camera(&self.saved, style).sanitized()
+        named == file
     }
 }
 
@@ -48,6 +49,16 @@ pub fn on_camera(loaded: &ComicStyle, camera: &ComicStyle) -> ComicStyle {
         loaded.over(camera)
     } else {
         loaded.clone()
+    }
+}
+
+/// A style with what the panel does not edit of another one.
+fn with_surroundings(style: ComicStyle, of: &ComicStyle) -> ComicStyle {
+    ComicStyle {
+        camera: of.camera,
+        #[cfg(feature = "toon")]
+        scene: of.scene.clone(),
+        ..style
     }
 }
 
@@ -165,9 +176,16 @@ impl Files {
         } else {
             self.title.clone()
         };
-        let saved = ComicStyle {
+        let named = ComicStyle {
             name: title.clone(),
             ..style.clone()
+        };
+        // On a camera without `Comic`, they are in the file alone.
+        let is_bare = with_surroundings(named.clone(), &ComicStyle::new()) == named;
+        let open = self.open.get(&camera).filter(|_| is_bare);
+        let saved = match open {
+            Some(open) => with_surroundings(named, &open.saved),
+            None => named,
         };
         let written = saved.to_ron().and_then(|text| {
             write(&path, &text)?;

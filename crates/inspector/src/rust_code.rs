@@ -9,7 +9,9 @@ use bevy::{
 };
 
 use super::fields::is_option;
-use bevy_comics::{ComicStyle, DepthMap, effect::AnyEffect};
+#[cfg(feature = "toon")]
+use bevy_comics::toon::StyleScene;
+use bevy_comics::{ComicStyle, DepthMap, effect::AnyEffect, style::StyleCamera};
 
 /// The types of [`bevy_comics::prelude`] that a style can hold.
 const PRELUDE: &[&str] = &[
@@ -59,6 +61,9 @@ const PRELUDE: &[&str] = &[
 pub fn rust_code(style: &ComicStyle) -> String {
     let mut types = TypeRegistry::default();
     types.register::<DepthMap>();
+    types.register::<StyleCamera>();
+    #[cfg(feature = "toon")]
+    types.register::<StyleScene>();
     for effect in style.effects() {
         (effect.effect_type().register)(&mut types);
     }
@@ -70,6 +75,13 @@ pub fn rust_code(style: &ComicStyle) -> String {
     if !style.off.is_empty() {
         // By name: the types of the effects are not known here.
         fields.push(format!("off: {:?}.into(),", Vec::from_iter(&style.off)));
+    }
+    if style.camera != StyleCamera::default() {
+        fields.push(format!("camera: {},", writer.value(&style.camera)));
+    }
+    #[cfg(feature = "toon")]
+    if let Some(scene) = &style.scene {
+        fields.push(format!("scene: Some({}),", writer.value(scene)));
     }
     let mut code = String::from("ComicStyle::new()");
     if !fields.is_empty() {

@@ -58,6 +58,7 @@ impl Effect for ToneBands {
         label: "Tone bands",
         explanation: "The lightness of the picture after banding.",
     });
+    const DIVIDES_TONES: bool = true;
     type Uniform = ToneBandsUniform;
 
     fades_by!(amount);

@@ -107,6 +107,7 @@ impl Effect for ToneRamp {
     const NAME: &'static str = "tone_ramp";
     const STAGE: EffectStage = EffectStage::Tone;
     const SHADER: EffectShader = shader!("tone_ramp", "ToneRamp");
+    const DIVIDES_TONES: bool = true;
     type Uniform = ToneRampUniform;
 
     fades_by!(amount);

@@ -70,6 +70,7 @@ impl Effect for TwoTone {
     const NAME: &'static str = "two_tone";
     const STAGE: EffectStage = EffectStage::Ink;
     const SHADER: EffectShader = shader!("two_tone", "TwoTone");
+    const DIVIDES_TONES: bool = true;
     type Uniform = TwoToneUniform;
 
     fades_by!(amount);

@@ -1,13 +1,13 @@
 //! The toon copies of standard materials, which scenes with equal settings share.
 
 use bevy::{
-    ecs::{entity::EntityHashMap, system::SystemParam},
+    ecs::system::SystemParam,
     material::OpaqueRendererMethod,
     platform::collections::{HashMap, HashSet},
     prelude::*,
 };
 
-use super::{Original, ToonScene};
+use super::{Original, RootKey, ToonScene};
 use crate::toon::{MaterialName, ToonLight, ToonMaterial, ToonShading, shading};
 
 /// What the copies of a scene have besides their standard materials and shadings.
@@ -49,7 +49,7 @@ pub(in crate::toon) struct Copies {
     /// The different settings of all scenes, and how many scenes have them: none where a place is
     /// free.
     settings: Vec<(Settings, usize)>,
-    roots: EntityHashMap<Root>,
+    roots: HashMap<RootKey, Root>,
     /// Settings that have changed in this frame.
     changed: Vec<usize>,
 }
@@ -85,7 +85,7 @@ impl Copies {
 
     /// Changes settings in place where all scenes that have them say the same new ones: so their
     /// copies only change.
-    pub fn rewrite<'a>(&mut self, tuned: impl Iterator<Item = (Entity, &'a ToonScene)>) {
+    pub fn rewrite<'a>(&mut self, tuned: impl Iterator<Item = (RootKey, &'a ToonScene)>) {
         let mut said: HashMap<usize, (Settings, usize)> = HashMap::default();
         for (root, scene) in tuned {
             if let Some(known) = self.roots.get(&root) {
@@ -103,7 +103,7 @@ impl Copies {
     }
 
     /// Notes what a scene says; whether its meshes may have other copies now.
-    pub fn update(&mut self, root: Entity, scene: &ToonScene) -> bool {
+    pub fn update(&mut self, root: RootKey, scene: &ToonScene) -> bool {
         let settings = Settings::of(scene);
         let before = self.roots.get(&root).map(|root| root.settings);
         let at = match before {
@@ -139,9 +139,18 @@ impl Copies {
     }
 
     /// Forgets a scene that is gone.
-    pub fn forget(&mut self, root: Entity) {
+    pub fn forget(&mut self, root: RootKey) {
         if let Some(root) = self.roots.remove(&root) {
             self.leave(root.settings);
+        }
+    }
+
+    /// Forgets the scenes that are gone.
+    pub fn keep(&mut self, is_there: impl Fn(RootKey) -> bool) {
+        let roots = self.roots.keys().copied();
+        let gone: Vec<RootKey> = roots.filter(|root| !is_there(*root)).collect();
+        for root in gone {
+            self.forget(root);
         }
     }
 }

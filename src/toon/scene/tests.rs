@@ -92,6 +92,118 @@ fn scenes_with_equal_settings_share_a_copy() {
     assert_eq!(restored, Some(&standard));
 }
 
+/// The highlight of a mesh's toon copy, if it has one.
+fn highlight(app: &App, mesh: Entity) -> Option<f32> {
+    let materials = app.world().resource::<Assets<ToonMaterial>>();
+    let material = materials.get(&copy(app, mesh)?)?;
+    Some(material.extension.highlight)
+}
+
+/// A camera with a style that lights meshes.
+fn styled(app: &mut App, order: isize, highlight: f32) -> Entity {
+    let camera = Camera { order, ..default() };
+    let scene = CameraScene(StyleScene::new(lit(highlight).light));
+    app.world_mut().spawn((camera, scene)).id()
+}
+
+#[test]
+fn a_camera_lights_the_meshes_that_it_sees() {
+    let mut app = app();
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let root = app.world_mut().spawn(lit(0.1)).id();
+    let below = (standard.clone(), ChildOf(root));
+    let below = app.world_mut().spawn(below).id();
+    let elsewhere = (standard.clone(), RenderLayers::layer(1));
+    let elsewhere = app.world_mut().spawn(elsewhere).id();
+    let own = MeshMaterial3d(add(&mut app, ToonMaterial::default()));
+    let own = app.world_mut().spawn(own).id();
+    let plain = app.world_mut().spawn(standard.clone()).id();
+    let shading = add(&mut app, ToonShading::new(lit(0.7).light));
+    let shaded = (standard.clone(), ToonShadingHandle(shading));
+    let shaded = app.world_mut().spawn(shaded).id();
+    let camera = styled(&mut app, 0, 0.3);
+    app.update();
+    let late = app.world_mut().spawn(standard.clone()).id();
+    app.update();
+    let lights =
+        |app: &App| [plain, late, below, shaded, own, elsewhere].map(|mesh| highlight(app, mesh));
+    let [one, scene, handle, default] = [0.3, 0.1, 0.7, 1.0].map(Some);
+    assert_eq!(lights(&app), [one, one, scene, handle, default, None]);
+
+    // Layers, and the style's file.
+    let moved = RenderLayers::layer(1);
+    app.world_mut().entity_mut(plain).insert(moved);
+    app.world_mut()
+        .entity_mut(elsewhere)
+        .remove::<RenderLayers>();
+    app.update();
+    assert_eq!(lights(&app), [None, one, scene, handle, default, one]);
+    let before = copy(&app, late);
+    let changed = CameraScene(StyleScene::new(lit(0.4).light));
+    app.world_mut().entity_mut(camera).insert(changed);
+    app.update();
+    assert_eq!(highlight(&app, late), Some(0.4));
+    assert_eq!(copy(&app, late), before, "its copy changes in place");
+
+    // Without the style, all is as it was.
+    app.world_mut().entity_mut(camera).remove::<CameraScene>();
+    app.update();
+    assert_eq!(lights(&app), [None, None, scene, None, default, None]);
+    for mesh in [plain, late, shaded, elsewhere] {
+        let restored = app.world().get::<MeshMaterial3d<StandardMaterial>>(mesh);
+        assert_eq!(restored, Some(&standard));
+    }
+}
+
+#[test]
+fn of_two_cameras_the_one_with_the_lower_order_lights_a_mesh() {
+    let mut app = app();
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let mesh = app.world_mut().spawn(standard).id();
+    let [first, second] = [(1, 0.1), (2, 0.2)].map(|(at, light)| styled(&mut app, at, light));
+    let set = |app: &mut App, camera, settings: Camera| {
+        app.world_mut().entity_mut(camera).insert(settings);
+        app.update();
+        highlight(app, mesh)
+    };
+    let at = |order| Camera { order, ..default() };
+    assert_eq!(set(&mut app, first, at(1)), Some(0.1));
+    assert_eq!(set(&mut app, first, at(3)), Some(0.2));
+    let asleep = Camera {
+        is_active: false,
+        ..at(2)
+    };
+    assert_eq!(set(&mut app, second, asleep), Some(0.1));
+    assert_eq!(set(&mut app, second, at(2)), Some(0.2));
+    app.world_mut().despawn(second);
+    app.update();
+    assert_eq!(highlight(&app, mesh), Some(0.1));
+}
+
+#[test]
+fn a_frame_without_changes_looks_at_no_mesh() {
+    let mut app = App::new();
+    app.add_systems(Update, find_meshes);
+    build(&mut app);
+    let camera = styled(&mut app, 0, 0.3);
+    let material = MeshMaterial3d::<StandardMaterial>::default();
+    let meshes: Vec<Entity> = (0..1000)
+        .map(|_| app.world_mut().spawn(material.clone()).id())
+        .collect();
+    let found = |app: &mut App| {
+        app.update();
+        app.world().resource::<SceneChanges>().meshes.len()
+    };
+    assert_eq!(found(&mut app), 1000);
+    assert_eq!(found(&mut app), 0);
+    let changed = CameraScene(StyleScene::new(lit(0.4).light));
+    app.world_mut().entity_mut(camera).insert(changed);
+    assert_eq!(found(&mut app), 0, "a light is that of materials");
+    let layer = RenderLayers::layer(2);
+    app.world_mut().entity_mut(meshes[7]).insert(layer);
+    assert_eq!(found(&mut app), 1);
+}
+
 #[test]
 fn meshes_follow_what_is_above_them() {
     let mut app = app();

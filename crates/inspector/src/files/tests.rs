@@ -84,6 +84,25 @@ fn a_partial_file_keeps_what_it_does_not_mention() {
     fs::remove_dir_all(&folder).expect("removed");
 }
 
+/// The panel edits effects alone, also on a camera that does not have the rest of the file.
+#[test]
+fn a_file_keeps_what_the_panel_does_not_edit() {
+    let folder = folder("scene");
+    let path = folder.join("ink.comic.ron");
+    let text = "(version: 3, camera: (dither: Off), contours: (width: 7.0))";
+    fs::write(&path, text).expect("written");
+    let mut files = Files::new(folder.clone(), EffectRegistry::built_in());
+    let camera = Entity::PLACEHOLDER;
+    let file = files.load(camera, &path).expect("loaded");
+    assert!(files.open[&camera].is_saved(&inked(7.0)));
+    files.save(camera, &inked(8.0));
+    let saved = style_of(&path, &text_of(&path).expect("text"), &files.registry);
+    let saved = saved.expect("a style");
+    assert_eq!(saved.camera, file.camera);
+    assert_eq!(saved.effects, inked(8.0).effects);
+    fs::remove_dir_all(&folder).expect("removed");
+}
+
 #[test]
 fn a_file_goes_there_and_back() {
     let folder = folder("files");

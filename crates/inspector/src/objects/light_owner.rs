@@ -16,7 +16,8 @@ pub enum LightOwner {
 }
 
 impl LightOwner {
-    /// `None` if the mesh has no toon material, or it has not loaded.
+    /// `None` if the mesh has no toon material, it has not loaded, or the style of a camera lights
+    /// it.
     pub fn of(world: &World, mesh: Entity) -> Option<Self> {
         let mesh = world.get_entity(mesh).ok()?;
         let material = &mesh.get::<MeshMaterial3d<ToonMaterial>>()?.0;
@@ -30,12 +31,13 @@ impl LightOwner {
                 .contains(material)
                 .then(|| Self::Material(material.clone()));
         };
-        let scene = world.get::<ToonScene>(root)?;
-        let shading = [chosen, scene.shading.as_ref()]
+        let scene = world.get::<ToonScene>(root);
+        let shading = [chosen, scene.and_then(|scene| scene.shading.as_ref())]
             .into_iter()
             .flatten()
             .find(|shading| is_loaded(world, shading));
-        Some(shading.cloned().map_or(Self::Scene(root), Self::Shading))
+        let of_scene = || scene.map(|_| Self::Scene(root));
+        shading.cloned().map(Self::Shading).or_else(of_scene)
     }
 
     /// The lighting; `None` if the place is gone.

@@ -207,6 +207,24 @@ fn only_what_differs_from_the_default_is_written() {
 })"#
     );
     assert_eq!(rust_code(&ComicStyle::new()), "ComicStyle::new()");
+    let tonemapped =
+        "(version: 3, camera: (tonemapping: AcesFitted), scene: (light: (highlight: 0)))";
+    assert_eq!(
+        rust_code(&ComicStyle::from_ron(tonemapped).expect("readable")),
+        r"ComicStyle {
+    camera: bevy_comics::style::StyleCamera {
+        tonemapping: Some(bevy::core_pipeline::tonemapping::Tonemapping::AcesFitted),
+        ..default()
+    },
+    scene: Some(bevy_comics::toon::StyleScene {
+        light: bevy_comics::toon::ToonLight {
+            highlight: 0.0,
+            ..default()
+        },
+    }),
+    ..ComicStyle::new()
+}"
+    );
     let partial = ComicStyle::new().partial();
     assert_eq!(rust_code(&partial), "ComicStyle::new().partial()");
     assert_eq!(

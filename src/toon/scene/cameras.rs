@@ -1,0 +1,164 @@
+//! Cameras whose style lights the meshes that they see.
+
+use bevy::{camera::visibility::RenderLayers, ecs::system::SystemParam, prelude::*};
+
+use super::{Original, RootKey, ToonScene};
+use crate::toon::StyleScene;
+
+/// On a camera with a [`Comic`](crate::Comic): what its style does to meshes.
+#[derive(Component, Clone, Debug, PartialEq)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct CameraScene(pub StyleScene);
+
+/// A camera that lights meshes.
+pub(super) struct StyledCamera {
+    pub camera: Entity,
+    order: isize,
+    layers: RenderLayers,
+}
+
+type Found<'a> = (
+    Entity,
+    Ref<'a, CameraScene>,
+    &'a Camera,
+    Option<&'a RenderLayers>,
+);
+
+impl StyledCamera {
+    fn new((camera, _, settings, layers): &Found) -> Self {
+        Self {
+            camera: *camera,
+            order: settings.order,
+            layers: layers.unwrap_or_default().clone(),
+        }
+    }
+
+    /// Whether it lights the same meshes as before.
+    fn is(&self, (camera, _, settings, layers): &Found) -> bool {
+        self.camera == *camera
+            && self.order == settings.order
+            && self.layers == *layers.unwrap_or_default()
+    }
+}
+
+/// The active cameras that light meshes, as meshes were last converted for them. The first one that
+/// sees a mesh decides.
+#[derive(Resource, Default)]
+pub(super) struct StyledCameras(Vec<StyledCamera>);
+
+impl StyledCameras {
+    pub fn seeing<'a>(
+        &'a self,
+        layers: &'a RenderLayers,
+    ) -> impl Iterator<Item = &'a StyledCamera> {
+        (self.0.iter()).filter(move |camera| camera.layers.intersects(layers))
+    }
+}
+
+/// What cameras light, and how that changes.
+#[derive(SystemParam)]
+pub(in crate::toon) struct CameraScenes<'w, 's> {
+    cameras: Query<
+        'w,
+        's,
+        (
+            Entity,
+            Ref<'static, CameraScene>,
+            &'static Camera,
+            Option<&'static RenderLayers>,
+        ),
+    >,
+    styled: ResMut<'w, StyledCameras>,
+    on_other_layers: Query<
+        'w,
+        's,
+        Entity,
+        (
+            Changed<RenderLayers>,
+            Or<(With<MeshMaterial3d<StandardMaterial>>, With<Original>)>,
+        ),
+    >,
+    on_default_layers: RemovedComponents<'w, 's, RenderLayers>,
+}
+
+impl CameraScenes<'_, '_> {
+    /// Notes the cameras. Returns whether any mesh may be lit by another one than before.
+    pub fn update(&mut self) -> bool {
+        let cameras = self.cameras.iter();
+        let mut found: Vec<Found> = cameras.filter(|found| found.2.is_active).collect();
+        found.sort_by_key(|(entity, _, camera, _)| (camera.order, *entity));
+        let known = &self.styled.0;
+        let is_same = known.len() == found.len()
+            && (known.iter().zip(&found)).all(|(known, found)| known.is(found));
+        if !is_same {
+            self.styled.0 = found.iter().map(StyledCamera::new).collect();
+        }
+        !is_same
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.styled.0.is_empty()
+    }
+
+    /// Whether a light is that of a camera.
+    pub fn has(&self, (root, _): RootKey) -> bool {
+        self.styled.0.iter().any(|camera| camera.camera == root)
+    }
+
+    /// The lights that have changed, or all of them, as those of scenes.
+    pub fn lights(&self, all: bool) -> Vec<(RootKey, ToonScene)> {
+        let mut lights = Vec::new();
+        for StyledCamera { camera, .. } in &self.styled.0 {
+            if let Ok((_, scene, ..)) = self.cameras.get(*camera)
+                && (all || scene.is_changed())
+            {
+                let light = scene.0.light.clone();
+                lights.push(((*camera, 1), ToonScene::new(light)));
+            }
+        }
+        lights
+    }
+
+    /// The entities that may be on other layers than before.
+    pub fn moved(&mut self) -> impl Iterator<Item = Entity> {
+        self.on_other_layers
+            .iter()
+            .chain(self.on_default_layers.read())
+    }
+}
+
+/// Frames with lights and lit meshes, but without shadows, until the scene counts as loaded.
+const LOADED: u32 = 30;
+
+/// Warns of a style with shadows in a scene where no light casts any: a style changes no lights.
+pub(in crate::toon) fn warn_of_missing_shadows(
+    cameras: Query<(Entity, &CameraScene)>,
+    meshes: Query<(), With<Original>>,
+    suns: Query<&DirectionalLight>,
+    lamps: Query<&PointLight>,
+    spots: Query<&SpotLight>,
+    mut frames: Local<u32>,
+) {
+    if *frames > LOADED {
+        return;
+    }
+    let mut wanting = (cameras.iter()).filter(|(_, scene)| scene.0.draws_cast_shadows());
+    let Some((camera, _)) = wanting.next().filter(|_| !meshes.is_empty()) else {
+        return;
+    };
+    if suns.iter().any(|light| light.shadow_maps_enabled)
+        || lamps.iter().any(|light| light.shadow_maps_enabled)
+        || spots.iter().any(|light| light.shadow_maps_enabled)
+    {
+        // There is nothing to say any more.
+        *frames = LOADED + 1;
+    } else if !suns.is_empty() || !lamps.is_empty() || !spots.is_empty() {
+        *frames += 1;
+        if *frames > LOADED {
+            warn!(
+                "the style of {camera} draws shadows, but no light has `shadow_maps_enabled`: a \
+                 style changes no lights"
+            );
+        }
+    }
+}
