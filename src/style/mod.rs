@@ -23,7 +23,7 @@ pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing}
 pub use volume::{InStyleVolumes, StyleVolume};
 
 #[cfg(feature = "toon")]
-pub use crate::toon::StyleScene;
+pub use crate::toon::{StylePart, StyleScene};
 use crate::{
     depth::DepthMap,
     effect::{AnyEffect, Effect, EffectSet},

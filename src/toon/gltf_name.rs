@@ -17,7 +17,7 @@ type Nameless = (
     Without<MaterialName>,
 );
 
-/// Names the meshes of scenes that choose shadings by name.
+/// Names the meshes that are lit by the names of their materials.
 pub(super) fn name_meshes(
     mut commands: Commands,
     (roots, changes): (SceneRoots, Res<SceneChanges>),
@@ -29,7 +29,7 @@ pub(super) fn name_meshes(
     };
     let types = types.read();
     for mesh in meshes.iter_many(&changes.meshes) {
-        let lit_by = roots.of(mesh.id());
+        let lit_by = roots.of(mesh.id(), None);
         if lit_by.is_some_and(|(_, lit_by)| lit_by.reads_names())
             && let Some(name) = gltf_name(mesh, &types)
         {

@@ -47,7 +47,7 @@ pub use rim::{Rim, RimWidth};
 pub(crate) use scene::CameraScene;
 pub use scene::ToonScene;
 pub use shading::{ToonShading, ToonShadingError, ToonShadingHandle, ToonShadingHandleTemplate};
-pub use style_scene::StyleScene;
+pub use style_scene::{StylePart, StyleScene};
 pub use stylized_highlight::{HighlightFrame, HighlightShape, StylizedHighlight};
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.

@@ -105,7 +105,8 @@ impl ToonScene {
     }
 }
 
-/// A light: an entity with a [`ToonScene`], with 0, or a camera with a [`CameraScene`], with 1.
+/// A light: an entity with a [`ToonScene`], with 0; or a camera with a [`CameraScene`], with 1 for
+/// the light of the scene, and more for those of its parts.
 type RootKey = (Entity, usize);
 
 /// On a converted mesh: its standard material, the light that it was converted for, and the shading
@@ -143,6 +144,9 @@ fn note<E: EntityEvent, B: Bundle>(on: On<E, B>, mut changes: ResMut<SceneChange
     changes.subtrees.insert(on.event_target());
 }
 
+/// The most entities in a row of parents that are looked at.
+const DEEPEST: usize = 65_536;
+
 /// What lights meshes, and the way to it.
 #[derive(SystemParam)]
 pub(super) struct SceneRoots<'w, 's> {
@@ -156,7 +160,7 @@ pub(super) struct SceneRoots<'w, 's> {
 /// The settings of what lights a mesh.
 pub(super) enum LitBy<'a> {
     Scene(&'a ToonScene),
-    Camera,
+    Camera(&'a StyleScene),
 }
 
 impl LitBy<'_> {
@@ -164,7 +168,7 @@ impl LitBy<'_> {
     pub(super) fn reads_names(&self) -> bool {
         match self {
             Self::Scene(scene) => !scene.overrides.is_empty(),
-            Self::Camera => false,
+            Self::Camera(scene) => !scene.parts.is_empty(),
         }
     }
 
@@ -176,7 +180,7 @@ impl LitBy<'_> {
     ) -> Option<Handle<ToonShading>> {
         let named = || match self {
             Self::Scene(scene) => scene.shading_of(name),
-            Self::Camera => None,
+            Self::Camera(_) => None,
         };
         own.map(|own| &own.0).or_else(named).cloned()
     }
@@ -184,26 +188,34 @@ impl LitBy<'_> {
 
 impl SceneRoots<'_, '_> {
     /// What lights a mesh: the nearest entity with a [`ToonScene`] among it and its ancestors, else
-    /// the first camera that sees it.
-    pub(super) fn of(&self, mesh: Entity) -> Option<(RootKey, LitBy<'_>)> {
-        let above = self.parents.iter_ancestors(mesh);
-        let nearest = std::iter::once(mesh)
-            .chain(above)
-            .find_map(|e| self.roots.get(e).ok());
+    /// the first camera that sees it, by the name of its material.
+    pub(super) fn of(
+        &self,
+        mesh: Entity,
+        name: Option<&MaterialName>,
+    ) -> Option<(RootKey, LitBy<'_>)> {
+        let nearest = self.way_up(mesh).find_map(|e| self.roots.get(e).ok());
         if let Some((root, scene)) = nearest {
             return Some(((root, 0), LitBy::Scene(scene)));
         }
         let layers = self.layers.get(mesh).ok().unwrap_or_default();
         let mut seeing = self.styled.seeing(layers).map(|styled| styled.camera);
         let camera = seeing.next()?;
-        let scene = self.scene_of(camera);
-        if let Some(other) = seeing.find(|other| self.scene_of(*other) != scene) {
+        let scene = self.scene_of(camera)?;
+        if let Some(other) = seeing.find(|other| self.scene_of(*other) != Some(scene)) {
             warn_once!(
                 "the styles of {camera} and {other} light the same meshes: that of {camera} applies, \
                  whose order is lower"
             );
         }
-        Some(((camera, 1), LitBy::Camera))
+        let light = 1 + scene.part_of(name);
+        Some(((camera, light), LitBy::Camera(scene)))
+    }
+
+    /// An entity and those above it. Parents in a circle, which the engine does not prevent, end.
+    fn way_up(&self, entity: Entity) -> impl Iterator<Item = Entity> {
+        let above = self.parents.iter_ancestors(entity);
+        std::iter::once(entity).chain(above).take(DEEPEST)
     }
 
     fn scene_of(&self, camera: Entity) -> Option<&StyleScene> {
@@ -211,7 +223,9 @@ impl SceneRoots<'_, '_> {
     }
 
     pub(super) fn any_reads_names(&self) -> bool {
-        (self.roots.iter()).any(|(_, scene)| LitBy::Scene(scene).reads_names())
+        let scenes = self.roots.iter().map(|(_, scene)| LitBy::Scene(scene));
+        let cameras = self.cameras.iter().map(|scene| LitBy::Camera(&scene.0));
+        scenes.chain(cameras).any(|lit_by| lit_by.reads_names())
     }
 }
 
@@ -339,7 +353,7 @@ pub(super) fn convert(
             continue;
         };
         let mut mesh = commands.entity(entity);
-        let Some((root, lit_by)) = roots.of(entity) else {
+        let Some((root, lit_by)) = roots.of(entity, name) else {
             if original.is_some() {
                 mesh.remove::<(MeshMaterial3d<ToonMaterial>, Original)>()
                     .insert(MeshMaterial3d(source.clone()));

@@ -1,9 +1,14 @@
 //! What a style does to the meshes of a scene.
 
-use bevy::prelude::*;
-use serde::{Deserialize, Serialize};
+use std::fmt;
 
-use super::ToonLight;
+use bevy::prelude::*;
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{Error, SeqAccess, Visitor},
+};
+
+use super::{MaterialName, ToonLight};
 use crate::settings::{clamp_fields, mix_fields};
 
 /// What a [`ComicStyle`](crate::ComicStyle) does to the meshes that a camera with a
@@ -17,7 +22,8 @@ use crate::settings::{clamp_fields, mix_fields};
 /// 1. its own [`ToonMaterial`](crate::ToonMaterial);
 /// 2. its [`ToonShadingHandle`](crate::ToonShadingHandle);
 /// 3. the nearest [`ToonScene`](crate::ToonScene) above it;
-/// 4. [`light`](Self::light).
+/// 4. the light of the first of the [`parts`](Self::parts) that names its material;
+/// 5. [`light`](Self::light).
 ///
 /// All cameras draw the same materials. Where cameras have different scenes for one mesh, that of
 /// the active camera with the lowest [`Camera::order`] applies, and a warning is logged. The other
@@ -29,42 +35,216 @@ use crate::settings::{clamp_fields, mix_fields};
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StyleScene {
-    /// Lighting of all materials. Files have it without a `ramp_map`. Default:
+    /// Lighting of the materials that no part names. Files have it without a `ramp_map`. Default:
     /// [`ToonLight::default`].
     pub light: ToonLight,
+    /// Exceptions by the names of materials, of which the first one that fits applies. At most 32;
+    /// a file with more is refused. Default: none.
+    #[serde(deserialize_with = "few")]
+    pub parts: Vec<StylePart>,
+}
+
+/// Materials of a [`StyleScene`] that differ from the rest, by their names.
+#[derive(Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StylePart {
+    /// Names of materials, with `|` between them. In a name, `*` is any text; upper and lower case
+    /// are the same, and spaces at both ends do not count. `"eye*|*_eye"` is `Eye`, `eyelash` and
+    /// `left_eye`. A name is the [`MaterialName`] of the mesh, which those of glTF files get from
+    /// the file. Default: empty, which is no material.
+    pub names: String,
+    /// Their lighting. `None`: that of the scene. Default: `None`.
+    pub light: Option<ToonLight>,
 }
 
 impl StyleScene {
+    /// The largest number of parts.
+    pub const MOST_PARTS: usize = 32;
+
     /// A scene with this lighting.
     #[must_use]
     pub fn new(light: ToonLight) -> Self {
-        Self { light }
+        Self {
+            light,
+            ..Self::default()
+        }
+    }
+
+    /// The same scene with this lighting for materials of these [names](StylePart::names), after
+    /// the parts that it has.
+    #[must_use]
+    pub fn with_part(mut self, names: impl Into<String>, light: ToonLight) -> Self {
+        self.parts.push(StylePart {
+            names: names.into(),
+            light: Some(light),
+        });
+        self
     }
 
     /// The settings that are used: every number is clamped to its documented range, and a number
-    /// that is not finite is replaced by its default.
+    /// that is not finite is replaced by its default. Parts beyond the largest number are left out.
     #[must_use]
-    pub fn sanitized(self) -> Self {
+    pub fn sanitized(mut self) -> Self {
+        self.parts.truncate(Self::MOST_PARTS);
+        for part in &mut self.parts {
+            part.light = part.light.take().map(ToonLight::sanitized);
+        }
         clamp_fields(Self {
             light: self.light.sanitized(),
+            ..self
         })
     }
 
     /// Whether a light has an image, which files of styles do not name.
     pub(crate) fn names_an_image(&self) -> bool {
-        !self.light.ramp_map.is_none()
+        let of_parts = self.parts.iter().filter_map(|part| part.light.as_ref());
+        of_parts
+            .chain([&self.light])
+            .any(|light| !light.ramp_map.is_none())
     }
 
     /// The scene at fraction `t` of the way to another one: numbers and colors of lights are
-    /// interpolated, the rest is that of this scene.
+    /// interpolated, also those of parts if both scenes have parts of the same names; the rest is
+    /// that of this scene.
     pub(crate) fn mixed(&self, other: &Self, t: f32) -> Self {
-        Self {
+        let mut mixed = Self {
             light: mix_fields(&self.light, &other.light, t),
+            ..self.clone()
+        };
+        if self.names().eq(other.names()) {
+            for (part, end) in mixed.parts.iter_mut().zip(&other.parts) {
+                if let (Some(light), Some(end)) = (&mut part.light, &end.light) {
+                    *light = mix_fields(&*light, end, t);
+                }
+            }
         }
+        mixed
+    }
+
+    /// The names of the parts.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.parts.iter().map(|part| part.names.as_str())
+    }
+
+    /// The part of a material, from 1; 0 if it has none.
+    pub(super) fn part_of(&self, name: Option<&MaterialName>) -> usize {
+        let Some(name) = name.filter(|_| !self.parts.is_empty()) else {
+            return 0;
+        };
+        let name = name.0.to_lowercase();
+        let part = self.parts.iter().position(|part| part.is_named(&name));
+        part.map_or(0, |part| part + 1)
+    }
+
+    /// The light of a part, from 1; 0 is the scene.
+    pub(super) fn light_of(&self, part: usize) -> &ToonLight {
+        let part = part.checked_sub(1).and_then(|part| self.parts.get(part));
+        part.and_then(|part| part.light.as_ref())
+            .unwrap_or(&self.light)
     }
 
     /// Whether shadows of other surfaces are to be drawn.
     pub(super) fn draws_cast_shadows(&self) -> bool {
         self.light.cast_shadows && self.light.shadow_strength > 0.0
+    }
+}
+
+impl StylePart {
+    /// Whether a name, in lower case, is among those of the part.
+    fn is_named(&self, name: &str) -> bool {
+        let names = self.names.to_lowercase();
+        let mut names = names.split('|').map(str::trim);
+        names.any(|pattern| !pattern.is_empty() && fits(pattern, name))
+    }
+}
+
+/// Whether a name fits a pattern, in which `*` is any text.
+fn fits(pattern: &str, name: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else {
+        return pattern == name;
+    };
+    let Some(mut name) = name.strip_prefix(start) else {
+        return false;
+    };
+    let mut pieces = rest.split('*');
+    let end = pieces.next_back().unwrap_or_default();
+    for piece in pieces {
+        let Some(at) = name.find(piece) else {
+            return false;
+        };
+        name = &name[at + piece.len()..];
+    }
+    name.ends_with(end)
+}
+
+/// No more parts than are used: a file takes memory in proportion to its length.
+fn few<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<StylePart>, D::Error> {
+    struct Parts;
+
+    impl<'de> Visitor<'de> for Parts {
+        type Value = Vec<StylePart>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            write!(f, "at most {} parts", StyleScene::MOST_PARTS)
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+            let mut parts = Vec::new();
+            while let Some(part) = seq.next_element()? {
+                if parts.len() == StyleScene::MOST_PARTS {
+                    return Err(A::Error::invalid_length(parts.len() + 1, &self));
+                }
+                parts.push(part);
+            }
+            Ok(parts)
+        }
+    }
+
+    deserializer.deserialize_seq(Parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_found_by_the_names_of_materials() {
+        let eyes = |names: &str| {
+            StyleScene::default()
+                .with_part("hair", ToonLight::default())
+                .with_part(names, ToonLight::default())
+        };
+        for (names, name, part) in [
+            ("*eye*", "Left Eye", 2),
+            ("eye* | *_EYE", "left_eye", 2),
+            ("eye*|*_eye", "Eyelash", 2),
+            ("eye*|*_eye", "bull's-eye", 0),
+            ("a*b*c", "a_b_b_c", 2),
+            ("a*b*c", "a_c_b", 0),
+            ("aba*aba", "aba", 0),
+            ("*", "anything", 2),
+            ("*", "HAIR", 1),
+            ("", "eye", 0),
+            ("", "", 0),
+        ] {
+            let found = eyes(names).part_of(Some(&name.into()));
+            assert_eq!(found, part, "{name} in {names}");
+        }
+        assert_eq!(eyes("*").part_of(None), 0, "a mesh without a name");
+    }
+
+    #[test]
+    fn a_file_has_few_parts_and_no_images() {
+        let read = |parts: &str| {
+            let text = format!("(version: 3, scene: (parts: [{parts}]))");
+            let style = crate::ComicStyle::from_ron(&text);
+            style.map_err(|error| error.to_string())
+        };
+        assert!(read(&"(names: \"a\"),".repeat(32)).is_ok());
+        let error = read(&"(),".repeat(33)).expect_err("too many");
+        assert!(error.contains("at most 32 parts"), "{error}");
+        let error = read("(light: (ramp_map: \"a.png\"))").expect_err("an image");
+        assert!(error.contains("`ramp_map`"), "{error}");
     }
 }

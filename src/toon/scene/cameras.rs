@@ -15,6 +15,8 @@ pub(super) struct StyledCamera {
     pub camera: Entity,
     order: isize,
     layers: RenderLayers,
+    /// Those of the parts of its scene.
+    names: Vec<String>,
 }
 
 type Found<'a> = (
@@ -25,19 +27,21 @@ type Found<'a> = (
 );
 
 impl StyledCamera {
-    fn new((camera, _, settings, layers): &Found) -> Self {
+    fn new((camera, scene, settings, layers): &Found) -> Self {
         Self {
             camera: *camera,
             order: settings.order,
             layers: layers.unwrap_or_default().clone(),
+            names: scene.0.names().map(str::to_owned).collect(),
         }
     }
 
     /// Whether it lights the same meshes as before.
-    fn is(&self, (camera, _, settings, layers): &Found) -> bool {
+    fn is(&self, (camera, scene, settings, layers): &Found) -> bool {
         self.camera == *camera
             && self.order == settings.order
             && self.layers == *layers.unwrap_or_default()
+            && scene.0.names().eq(self.names.iter().map(String::as_str))
     }
 }
 
@@ -101,8 +105,9 @@ impl CameraScenes<'_, '_> {
     }
 
     /// Whether a light is that of a camera.
-    pub fn has(&self, (root, _): RootKey) -> bool {
-        self.styled.0.iter().any(|camera| camera.camera == root)
+    pub fn has(&self, (root, light): RootKey) -> bool {
+        let mut styled = self.styled.0.iter();
+        styled.any(|camera| camera.camera == root && light <= camera.names.len() + 1)
     }
 
     /// The lights that have changed, or all of them, as those of scenes.
@@ -112,8 +117,10 @@ impl CameraScenes<'_, '_> {
             if let Ok((_, scene, ..)) = self.cameras.get(*camera)
                 && (all || scene.is_changed())
             {
-                let light = scene.0.light.clone();
-                lights.push(((*camera, 1), ToonScene::new(light)));
+                lights.extend((0..=scene.0.parts.len()).map(|part| {
+                    let light = scene.0.light_of(part).clone();
+                    ((*camera, 1 + part), ToonScene::new(light))
+                }));
             }
         }
         lights

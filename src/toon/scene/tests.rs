@@ -156,6 +156,44 @@ fn a_camera_lights_the_meshes_that_it_sees() {
 }
 
 #[test]
+fn parts_of_a_camera_are_materials_by_name() {
+    let mut app = app();
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let scene = StyleScene::new(lit(0.3).light).with_part("*eye*", lit(0.5).light);
+    let camera = (Camera::default(), CameraScene(scene));
+    let camera = app.world_mut().spawn(camera).id();
+    let [eye, hair] = ["Left eye", "Hair"].map(|name| {
+        let mesh = (standard.clone(), MaterialName::new(name));
+        app.world_mut().spawn(mesh).id()
+    });
+    let shading = add(&mut app, ToonShading::new(lit(0.7).light));
+    let lights = |app: &mut App| {
+        app.update();
+        [eye, hair].map(|mesh| highlight(app, mesh))
+    };
+    assert_eq!(lights(&mut app), [Some(0.5), Some(0.3)]);
+    // A part has another light, another name, and is gone.
+    let set = |app: &mut App, scene: StyleScene| {
+        app.world_mut()
+            .entity_mut(camera)
+            .insert(CameraScene(scene));
+    };
+    let scene = StyleScene::new(lit(0.3).light);
+    set(&mut app, scene.clone().with_part("*eye*", lit(0.6).light));
+    assert_eq!(lights(&mut app), [Some(0.6), Some(0.3)]);
+    set(&mut app, scene.clone().with_part("hair", lit(0.6).light));
+    assert_eq!(lights(&mut app), [Some(0.3), Some(0.6)]);
+    let own = ToonShadingHandle(shading);
+    app.world_mut().entity_mut(hair).insert(own);
+    assert_eq!(lights(&mut app), [Some(0.3), Some(0.7)]);
+    app.world_mut()
+        .entity_mut(hair)
+        .remove::<ToonShadingHandle>();
+    set(&mut app, scene);
+    assert_eq!(lights(&mut app), [Some(0.3), Some(0.3)]);
+}
+
+#[test]
 fn of_two_cameras_the_one_with_the_lower_order_lights_a_mesh() {
     let mut app = app();
     let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));

@@ -221,6 +221,7 @@ fn only_what_differs_from_the_default_is_written() {
             highlight: 0.0,
             ..default()
         },
+        ..default()
     }),
     ..ComicStyle::new()
 }"
