@@ -23,7 +23,7 @@ pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing}
 pub use volume::{InStyleVolumes, StyleVolume};
 
 #[cfg(feature = "toon")]
-pub use crate::toon::{StylePart, StyleScene};
+pub use crate::toon::{StylePart, StyleScene, StyleScope};
 use crate::{
     depth::DepthMap,
     effect::{AnyEffect, Effect, EffectSet},

@@ -47,7 +47,7 @@ pub use rim::{Rim, RimWidth};
 pub(crate) use scene::CameraScene;
 pub use scene::ToonScene;
 pub use shading::{ToonShading, ToonShadingError, ToonShadingHandle, ToonShadingHandleTemplate};
-pub use style_scene::{StylePart, StyleScene};
+pub use style_scene::{StylePart, StyleScene, StyleScope};
 pub use stylized_highlight::{HighlightFrame, HighlightShape, StylizedHighlight};
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
@@ -58,6 +58,7 @@ impl Plugin for ToonPlugin {
         app.register_type::<ToonLight>()
             .register_type::<ToonScene>()
             .register_type::<StyleScene>()
+            .register_type::<StyleScope>()
             .register_type::<TonalArtMap>()
             .register_type::<MaterialName>()
             .register_type::<ToonShadingHandle>();

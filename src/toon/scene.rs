@@ -188,7 +188,7 @@ impl LitBy<'_> {
 
 impl SceneRoots<'_, '_> {
     /// What lights a mesh: the nearest entity with a [`ToonScene`] among it and its ancestors, else
-    /// the first camera that sees it, by the name of its material.
+    /// the first camera whose style includes it, by the name of its material.
     pub(super) fn of(
         &self,
         mesh: Entity,
@@ -199,10 +199,13 @@ impl SceneRoots<'_, '_> {
             return Some(((root, 0), LitBy::Scene(scene)));
         }
         let layers = self.layers.get(mesh).ok().unwrap_or_default();
-        let mut seeing = self.styled.seeing(layers).map(|styled| styled.camera);
-        let camera = seeing.next()?;
+        let styled = self.styled.0.iter();
+        let mut lighting = styled
+            .filter(|styled| styled.lights(layers, self.way_up(mesh)))
+            .map(|styled| styled.camera);
+        let camera = lighting.next()?;
         let scene = self.scene_of(camera)?;
-        if let Some(other) = seeing.find(|other| self.scene_of(*other) != Some(scene)) {
+        if let Some(other) = lighting.find(|other| self.scene_of(*other) != Some(scene)) {
             warn_once!(
                 "the styles of {camera} and {other} light the same meshes: that of {camera} applies, \
                  whose order is lower"

@@ -14,7 +14,7 @@ use crate::settings::{clamp_fields, mix_fields};
 /// What a [`ComicStyle`](crate::ComicStyle) does to the meshes that a camera with a
 /// [`Comic`](crate::Comic) sees: those with a [`StandardMaterial`] on the
 /// [`RenderLayers`](bevy::camera::visibility::RenderLayers) of the camera, also those that are
-/// spawned later.
+/// spawned later. [`StyleScope`] on the camera limits it to parts of the scene, or to none.
 ///
 /// They are drawn with toon copies of their materials, as below a [`ToonScene`](crate::ToonScene).
 /// A mesh has the first of these that exists:
@@ -56,6 +56,19 @@ pub struct StylePart {
     pub names: String,
     /// Their lighting. `None`: that of the scene. Default: `None`.
     pub light: Option<ToonLight>,
+}
+
+/// On a camera with a [`Comic`](crate::Comic): which meshes its style changes.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub enum StyleScope {
+    /// Those on the [`RenderLayers`](bevy::camera::visibility::RenderLayers) of the camera.
+    #[default]
+    Layers,
+    /// Those of these entities and their descendants, whatever their layers are.
+    Roots(#[entities] Vec<Entity>),
+    /// None: the camera has the effects and settings of its style alone.
+    CameraOnly,
 }
 
 impl StyleScene {

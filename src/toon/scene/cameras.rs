@@ -3,7 +3,7 @@
 use bevy::{camera::visibility::RenderLayers, ecs::system::SystemParam, prelude::*};
 
 use super::{Original, RootKey, ToonScene};
-use crate::toon::StyleScene;
+use crate::toon::{StyleScene, StyleScope};
 
 /// On a camera with a [`Comic`](crate::Comic): what its style does to meshes.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -15,6 +15,7 @@ pub(super) struct StyledCamera {
     pub camera: Entity,
     order: isize,
     layers: RenderLayers,
+    scope: StyleScope,
     /// Those of the parts of its scene.
     names: Vec<String>,
 }
@@ -23,41 +24,43 @@ type Found<'a> = (
     Entity,
     Ref<'a, CameraScene>,
     &'a Camera,
-    Option<&'a RenderLayers>,
+    (Option<&'a RenderLayers>, Option<&'a StyleScope>),
 );
 
 impl StyledCamera {
-    fn new((camera, scene, settings, layers): &Found) -> Self {
+    fn new((camera, scene, settings, (layers, scope)): &Found) -> Self {
         Self {
             camera: *camera,
             order: settings.order,
             layers: layers.unwrap_or_default().clone(),
+            scope: scope.cloned().unwrap_or_default(),
             names: scene.0.names().map(str::to_owned).collect(),
         }
     }
 
     /// Whether it lights the same meshes as before.
-    fn is(&self, (camera, scene, settings, layers): &Found) -> bool {
+    fn is(&self, (camera, scene, settings, (layers, scope)): &Found) -> bool {
         self.camera == *camera
             && self.order == settings.order
             && self.layers == *layers.unwrap_or_default()
+            && self.scope == *scope.unwrap_or(&StyleScope::Layers)
             && scene.0.names().eq(self.names.iter().map(String::as_str))
+    }
+
+    /// Whether it lights a mesh on these layers. `way_up`: the mesh and the entities above it.
+    pub fn lights(&self, layers: &RenderLayers, mut way_up: impl Iterator<Item = Entity>) -> bool {
+        match &self.scope {
+            StyleScope::Layers => self.layers.intersects(layers),
+            StyleScope::Roots(roots) => way_up.any(|entity| roots.contains(&entity)),
+            StyleScope::CameraOnly => false,
+        }
     }
 }
 
 /// The active cameras that light meshes, as meshes were last converted for them. The first one that
-/// sees a mesh decides.
+/// lights a mesh decides.
 #[derive(Resource, Default)]
-pub(super) struct StyledCameras(Vec<StyledCamera>);
-
-impl StyledCameras {
-    pub fn seeing<'a>(
-        &'a self,
-        layers: &'a RenderLayers,
-    ) -> impl Iterator<Item = &'a StyledCamera> {
-        (self.0.iter()).filter(move |camera| camera.layers.intersects(layers))
-    }
-}
+pub(super) struct StyledCameras(pub Vec<StyledCamera>);
 
 /// What cameras light, and how that changes.
 #[derive(SystemParam)]
@@ -69,7 +72,7 @@ pub(in crate::toon) struct CameraScenes<'w, 's> {
             Entity,
             Ref<'static, CameraScene>,
             &'static Camera,
-            Option<&'static RenderLayers>,
+            (Option<&'static RenderLayers>, Option<&'static StyleScope>),
         ),
     >,
     styled: ResMut<'w, StyledCameras>,
@@ -88,8 +91,10 @@ pub(in crate::toon) struct CameraScenes<'w, 's> {
 impl CameraScenes<'_, '_> {
     /// Notes the cameras. Returns whether any mesh may be lit by another one than before.
     pub fn update(&mut self) -> bool {
-        let cameras = self.cameras.iter();
-        let mut found: Vec<Found> = cameras.filter(|found| found.2.is_active).collect();
+        let cameras = self.cameras.iter().filter(|(.., camera, (_, scope))| {
+            camera.is_active && *scope != Some(&StyleScope::CameraOnly)
+        });
+        let mut found: Vec<Found> = cameras.collect();
         found.sort_by_key(|(entity, _, camera, _)| (camera.order, *entity));
         let known = &self.styled.0;
         let is_same = known.len() == found.len()

@@ -1,6 +1,7 @@
 //! Scenes share copies, and follow what changes.
 
 use super::*;
+use crate::toon::StyleScope;
 
 /// The part of the plugin that shadings and scenes need.
 fn app() -> App {
@@ -153,6 +154,33 @@ fn a_camera_lights_the_meshes_that_it_sees() {
         let restored = app.world().get::<MeshMaterial3d<StandardMaterial>>(mesh);
         assert_eq!(restored, Some(&standard));
     }
+}
+
+#[test]
+fn a_scope_limits_what_a_camera_lights() {
+    let mut app = app();
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let hero = app.world_mut().spawn(RenderLayers::layer(3)).id();
+    let [within, beside] = [Some(hero), None].map(|parent| {
+        let mut mesh = app.world_mut().spawn(standard.clone());
+        if let Some(parent) = parent {
+            mesh.insert((ChildOf(parent), RenderLayers::layer(3)));
+        }
+        mesh.id()
+    });
+    let camera = styled(&mut app, 0, 0.3);
+    let lights = |app: &mut App, scope: StyleScope| {
+        app.world_mut().entity_mut(camera).insert(scope);
+        app.update();
+        [within, beside].map(|mesh| highlight(app, mesh))
+    };
+    assert_eq!(lights(&mut app, StyleScope::Layers), [None, Some(0.3)]);
+    let roots = StyleScope::Roots(vec![hero]);
+    assert_eq!(lights(&mut app, roots), [Some(0.3), None]);
+    assert_eq!(lights(&mut app, StyleScope::CameraOnly), [None, None]);
+    app.world_mut().entity_mut(camera).remove::<StyleScope>();
+    app.update();
+    assert_eq!(highlight(&app, beside), Some(0.3));
 }
 
 #[test]
