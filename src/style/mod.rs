@@ -22,6 +22,8 @@ pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
 pub use volume::{InStyleVolumes, StyleVolume};
 
+#[cfg(all(feature = "toon", feature = "objects"))]
+pub use crate::toon::AddedByStyle;
 #[cfg(feature = "toon")]
 pub use crate::toon::{StylePart, StyleScene, StyleScope};
 use crate::{

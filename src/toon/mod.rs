@@ -44,6 +44,8 @@ pub use ramp::{Ramp, RampBlend, RampMode};
 pub use ramp_map::RampMap;
 pub use ramp_stop::RampStop;
 pub use rim::{Rim, RimWidth};
+#[cfg(feature = "objects")]
+pub use scene::AddedByStyle;
 pub(crate) use scene::CameraScene;
 pub use scene::ToonScene;
 pub use shading::{ToonShading, ToonShadingError, ToonShadingHandle, ToonShadingHandleTemplate};
@@ -135,6 +137,15 @@ fn add_material(app: &mut App) -> bool {
         view_range::add_texture(&mut images);
     }
     scene::build(app);
+    #[cfg(feature = "objects")]
+    app.register_type::<AddedByStyle>().add_systems(
+        PostUpdate,
+        // Before lines and patterns look for them.
+        scene::add_components
+            .after(scene::find_meshes)
+            .before(scene::convert)
+            .before(TransformSystems::Propagate),
+    );
     app.add_plugins(MaterialPlugin::<ToonMaterial>::default())
         .register_asset_reflect::<ToonMaterial>()
         .init_resource::<ramp_sums::RampSums>()

@@ -1,5 +1,7 @@
 //! A component that draws a whole scene with the toon material.
 
+#[cfg(feature = "objects")]
+mod added;
 mod cameras;
 mod copies;
 
@@ -15,9 +17,13 @@ use bevy::{
 use super::{
     MaterialName, StyleScene, ToonLight, ToonMaterial, ToonShading, ToonShadingHandle, shading,
 };
-use cameras::{CameraScenes, StyledCameras};
+use cameras::{CameraScenes, StyledCamera, StyledCameras};
 use copies::{Copies, Materials};
 
+#[cfg(feature = "objects")]
+pub use added::AddedByStyle;
+#[cfg(feature = "objects")]
+pub(super) use added::add_components;
 pub(crate) use cameras::CameraScene;
 pub(super) use cameras::warn_of_missing_shadows;
 pub(super) use copies::follow_materials;
@@ -127,6 +133,8 @@ pub(super) struct SceneChanges {
     waiting: EntityHashSet,
     /// The meshes among all these, in this frame.
     pub(super) meshes: Vec<Entity>,
+    /// Whether these are all meshes, as cameras have changed.
+    all: bool,
 }
 
 /// Notes changes. Without any, a frame does nothing for each mesh.
@@ -198,11 +206,7 @@ impl SceneRoots<'_, '_> {
         if let Some((root, scene)) = nearest {
             return Some(((root, 0), LitBy::Scene(scene)));
         }
-        let layers = self.layers.get(mesh).ok().unwrap_or_default();
-        let styled = self.styled.0.iter();
-        let mut lighting = styled
-            .filter(|styled| styled.lights(layers, self.way_up(mesh)))
-            .map(|styled| styled.camera);
+        let mut lighting = self.lighting(mesh).map(|styled| styled.camera);
         let camera = lighting.next()?;
         let scene = self.scene_of(camera)?;
         if let Some(other) = lighting.find(|other| self.scene_of(*other) != Some(scene)) {
@@ -213,6 +217,13 @@ impl SceneRoots<'_, '_> {
         }
         let light = 1 + scene.part_of(name);
         Some(((camera, light), LitBy::Camera(scene)))
+    }
+
+    /// The cameras whose styles include a mesh. The first one decides.
+    fn lighting(&self, mesh: Entity) -> impl Iterator<Item = &StyledCamera> {
+        let layers = self.layers.get(mesh).ok().unwrap_or_default();
+        let styled = self.styled.0.iter();
+        styled.filter(move |styled| styled.lights(layers, self.way_up(mesh)))
     }
 
     /// An entity and those above it. Parents in a circle, which the engine does not prevent, end.
@@ -245,6 +256,7 @@ pub(super) fn find_meshes(
 ) {
     let changes = &mut *changes;
     changes.meshes.clear();
+    changes.all = false;
     copies.begin();
     let mut all = cameras.update();
     if scenes.is_empty() && cameras.is_empty() && copies.is_unused() {
@@ -277,6 +289,7 @@ pub(super) fn find_meshes(
         }
     }
     if all {
+        changes.all = true;
         changes.subtrees.clear();
         changes.waiting.clear();
         changes.meshes.extend(&meshes);

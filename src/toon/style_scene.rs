@@ -9,7 +9,7 @@ use serde::{
 };
 
 use super::{MaterialName, ToonLight};
-use crate::settings::{clamp_fields, mix_fields};
+use crate::settings::{FieldRange, NotFinite, clamp_fields, clamp_or_default, mix_fields};
 
 /// What a [`ComicStyle`](crate::ComicStyle) does to the meshes that a camera with a
 /// [`Comic`](crate::Comic) sees: those with a [`StandardMaterial`] on the
@@ -42,6 +42,17 @@ pub struct StyleScene {
     /// a file with more is refused. Default: none.
     #[serde(deserialize_with = "few")]
     pub parts: Vec<StylePart>,
+    /// Gives the meshes [`MeshSections`](crate::objects::MeshSections) of this angle in degrees: on
+    /// the entity at the top of each hierarchy with such a mesh, or on each of the
+    /// [roots](StyleScope::Roots), if it has none of its own. Range 10 to 180. `None` leaves it to
+    /// the camera's [`CreaseSource`](crate::lines::CreaseSource). Needs the feature `objects`.
+    /// Default: `None`.
+    #[reflect(@FieldRange::linear(10.0, 180.0).unit("°"), @NotFinite(50.0))]
+    pub sections: Option<f32>,
+    /// Whether patterns follow objects: the same entities get a
+    /// [`PatternAnchor`](crate::objects::PatternAnchor), which halftones and strokes with an anchor
+    /// to objects use. Needs the feature `objects`. Default: `false`.
+    pub screens: bool,
 }
 
 /// Materials of a [`StyleScene`] that differ from the rest, by their names.
@@ -133,6 +144,12 @@ impl StyleScene {
             }
         }
         mixed
+    }
+
+    /// The angle of sections, in its range.
+    pub(super) fn angle(&self) -> Option<f32> {
+        let clamped = |angle| clamp_or_default(angle, 50.0, 10.0, 180.0);
+        self.sections.map(clamped)
     }
 
     /// The names of the parts.

@@ -16,7 +16,7 @@ static ALLOCATOR: Counting = Counting;
 /// A style with what no preset has.
 const SCENE: &str = "(version: 3, camera: (dither: On, msaa: Sample8, tonemapping: Off), \
     scene: (light: (highlight: 0.5, ramp: (stops: [(at: 0.5, color: \"#336699\")], mode: PerLight)), \
-    parts: [(names: \"eye*|*_eye\", light: (shadow_threshold: 0)), (names: \"skin\")]))";
+    parts: [(names: \"eye*|*_eye\", light: (shadow_threshold: 0)), (names: \"skin\")], sections: 45, screens: true))";
 
 /// Styles of the previous version, with its names.
 const OLD: [&str; 3] = [

@@ -18,6 +18,8 @@ pub(super) struct StyledCamera {
     scope: StyleScope,
     /// Those of the parts of its scene.
     names: Vec<String>,
+    /// What it adds to meshes: sections of this angle, and an anchor of patterns.
+    pub adds: (Option<f32>, bool),
 }
 
 type Found<'a> = (
@@ -35,6 +37,7 @@ impl StyledCamera {
             layers: layers.unwrap_or_default().clone(),
             scope: scope.cloned().unwrap_or_default(),
             names: scene.0.names().map(str::to_owned).collect(),
+            adds: (scene.0.angle(), scene.0.screens),
         }
     }
 
@@ -44,6 +47,7 @@ impl StyledCamera {
             && self.order == settings.order
             && self.layers == *layers.unwrap_or_default()
             && self.scope == *scope.unwrap_or(&StyleScope::Layers)
+            && self.adds == (scene.0.angle(), scene.0.screens)
             && scene.0.names().eq(self.names.iter().map(String::as_str))
     }
 
@@ -54,6 +58,20 @@ impl StyledCamera {
             StyleScope::Roots(roots) => way_up.any(|entity| roots.contains(&entity)),
             StyleScope::CameraOnly => false,
         }
+    }
+
+    /// The entity that its style adds components to, for a mesh that it lights.
+    #[cfg(feature = "objects")]
+    pub fn top(&self, mut way_up: impl Iterator<Item = Entity>) -> Option<Entity> {
+        match &self.scope {
+            StyleScope::Roots(roots) => way_up.find(|entity| roots.contains(entity)),
+            _ => way_up.last(),
+        }
+    }
+
+    #[cfg(feature = "objects")]
+    pub fn has_root(&self, entity: Entity) -> bool {
+        matches!(&self.scope, StyleScope::Roots(roots) if roots.contains(&entity))
     }
 }
 

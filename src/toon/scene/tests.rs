@@ -322,3 +322,68 @@ fn meshes_follow_what_is_above_them() {
     let materials = app.world().resource::<Assets<ToonMaterial>>();
     assert_eq!(materials.get(&copy).expect("a copy").base.metallic, 0.7);
 }
+
+#[cfg(feature = "objects")]
+#[test]
+fn sections_and_anchors_come_and_go_with_a_style() {
+    use crate::objects::{MeshSections, PatternAnchor};
+
+    let mut app = app();
+    let after_search = add_components.after(find_meshes).before(follow_materials);
+    app.add_systems(Update, after_search);
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let own = MeshSections { angle: 30.0 };
+    let [root, sharp] = [None, Some(own)].map(|sections| {
+        let mut root = app.world_mut().spawn_empty();
+        if let Some(sections) = sections {
+            root.insert(sections);
+        }
+        root.with_child(standard.clone()).id()
+    });
+    let scene = StyleScene {
+        sections: Some(45.0),
+        screens: true,
+        ..StyleScene::default()
+    };
+    let camera = (Camera::default(), CameraScene(scene.clone()));
+    let camera = app.world_mut().spawn(camera).id();
+    app.update();
+    let found = |app: &App, root| {
+        let root = app.world().entity(root);
+        let angle = root.get::<MeshSections>().map(|sections| sections.angle);
+        (angle, root.get::<PatternAnchor>().copied())
+    };
+    let anchor = Some(PatternAnchor::default());
+    assert_eq!(found(&app, root), (Some(45.0), anchor));
+    assert_eq!(found(&app, sharp), (Some(30.0), anchor), "its own angle");
+
+    // The style changes, an object comes, and one is put below another.
+    let plain = StyleScene {
+        sections: None,
+        ..scene.clone()
+    };
+    app.world_mut()
+        .entity_mut(camera)
+        .insert(CameraScene(plain));
+    app.update();
+    assert_eq!(found(&app, root), (None, anchor));
+    let late = app.world_mut().spawn(standard.clone()).id();
+    app.update();
+    assert_eq!(found(&app, late), (None, anchor));
+    app.world_mut().entity_mut(late).insert(ChildOf(root));
+    app.update();
+    assert_eq!(found(&app, late), (None, None), "its figure has one");
+
+    // What the game has changed stays when the style goes.
+    let moved = PatternAnchor {
+        center: Vec3::X,
+        ..PatternAnchor::default()
+    };
+    app.world_mut().entity_mut(root).insert(moved);
+    app.world_mut().entity_mut(camera).remove::<CameraScene>();
+    app.update();
+    assert_eq!(found(&app, root), (None, Some(moved)));
+    assert_eq!(found(&app, sharp), (Some(30.0), None));
+    let mut added = app.world_mut().query::<&AddedByStyle>();
+    assert_eq!(added.iter(app.world()).count(), 0);
+}
