@@ -135,8 +135,7 @@ macro_rules! presets {
 presets! {
     /// The styles, in the order of the gallery: toons, books, prints, drawings, paintings, light.
     STYLES {
-        /// A television toon: strong dark outlines. Flat with
-        /// [`ToonScene`](crate::ToonScene).
+        /// A television toon: strong dark outlines and flat light.
         SATURDAY_MORNING: "saturday-morning";
         /// Four tones and heavy outlines under one blue-gray atmosphere.
         GRAPHIC_NOVEL: "graphic-novel";
