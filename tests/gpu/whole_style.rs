@@ -1,6 +1,11 @@
 //! One component gives a camera a whole style.
 
+use bevy::ecs::system::RunSystemOnce;
 use bevy_comics::toon::StyleScene;
+use bevy_comics_testkit::{
+    scenes::{ScenePart, Stage},
+    studio::reserve_entities,
+};
 
 use crate::prelude::*;
 
@@ -62,4 +67,55 @@ fn a_comic_draws_what_its_parts_draw_and_leaves_nothing_behind() {
     assert!(whole == by_hand, "{}", changed(&whole, &by_hand, 0));
     small.camera_mut().remove::<Comic>();
     assert!(small.settle().picture() == plain, "without it");
+}
+
+/// A scene in an app that knows of styles the plugin alone.
+fn bare(scene: BuiltIn, size: UVec2, comic: impl FnOnce(&mut World) -> Comic) -> image::RgbaImage {
+    let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    reserve_entities(world);
+    let vantage = world
+        .run_system_once(move |mut stage: Stage| stage.spawn(scene))
+        .expect("the stage is there");
+    let comic = comic(world);
+    world
+        .spawn((vantage.camera(), target, Msaa::Off, comic))
+        .insert(Tonemapping::default());
+    headless.step(4);
+    headless.picture()
+}
+
+#[ignore = "long: a scene of its own; quick test whole_style::a_comic_draws_what_its_parts_draw_and_leaves_nothing_behind"]
+#[test]
+fn the_printed_line_draws_the_picture_of_the_gallery() {
+    let (scene, size, preset) = (BuiltIn::Theatre, UVec2::new(160, 90), presets::MANGA_PAGE);
+    let mut studio = Studio::new(scene, size, Msaa::Off);
+    let gallery = studio.shoot(Some(&preset.style()));
+    let whole = bare(scene, size, |_| preset.comic());
+    assert_eq!(changed(&whole, &gallery, 0), 0.0);
+
+    // All of it by hand, and dots that follow objects.
+    let mut followed = preset.style();
+    let dots = followed.get_mut::<Halftone>().expect("dots");
+    dots.anchor = ScreenAnchor::Object;
+    let by_hand = ComicStyle {
+        scene: None,
+        ..followed.clone()
+    };
+    let world = studio.headless.app.world_mut();
+    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
+    for part in parts.iter(world).collect::<Vec<_>>() {
+        world.entity_mut(part).insert(PatternAnchor::default());
+    }
+    let by_hand = studio.shoot(Some(&by_hand));
+    assert!(changed(&by_hand, &gallery, 16) > 0.01, "the dots move");
+    followed.scene = followed.scene.map(|scene| StyleScene {
+        screens: true,
+        ..scene
+    });
+    let whole = bare(scene, size, |world| {
+        Comic(world.resource_mut::<Assets<ComicStyle>>().add(followed))
+    });
+    assert_eq!(changed(&whole, &by_hand, 0), 0.0);
 }

@@ -3,18 +3,18 @@
 use std::time::Duration;
 
 use bevy::{
-    camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
-    prelude::*, time::TimeUpdateStrategy,
+    camera::RenderTarget, ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    ComicStyle, ComicsPlugin, DepthMap, Focus, Halftone, Hatching, IsoLines, Outlines, Paint,
-    Paper, SpeedLines, ToneBands, ToneRamp, ToonLight, ToonScene, TwoTone,
+    Comic, ComicStyle, ComicsPlugin, DepthMap, Focus, Halftone, Hatching, IsoLines, Outlines,
+    Paint, Paper, SpeedLines, ToneRamp, ToonLight, ToonScene, TwoTone,
     effects::{
         FocusAt, FocusStyle, HalftoneMode, HatchingGround, HatchingKind, PaintKernel, ScreenAnchor,
         ScreenShape, SpeedLineKind,
     },
-    objects::{MeshSections, PatternAnchor},
+    objects::MeshSections,
     presets,
+    style::{StyleScene, StyleScope},
 };
 
 use super::{
@@ -33,6 +33,7 @@ pub struct Studio {
     pub headless: Headless,
     pub camera: Entity,
     pub vantage: Vantage,
+    is_toon: bool,
 }
 
 /// The entities of a scene come after this index. How many an app has before them changes with the
@@ -40,7 +41,7 @@ pub struct Studio {
 /// entity.
 const FIRST_OF_SCENE: u32 = 1024;
 
-fn reserve_entities(world: &mut World) {
+pub fn reserve_entities(world: &mut World) {
     while world.spawn_empty().id().index_u32() < FIRST_OF_SCENE {}
 }
 
@@ -80,16 +81,26 @@ impl Studio {
             headless,
             camera,
             vantage,
+            is_toon: scene.is_toon(),
         }
     }
 
-    /// The picture of the scene in a style; unstyled for `None`.
+    /// The picture of the scene in a style; unstyled for `None`. Scenes that are made for the toon
+    /// material have the light of the style, if it has one.
     pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
         let none = ComicStyle::default();
         let style = style.unwrap_or(&none);
         let world = self.headless.app.world_mut();
-        set_screens(world, follows_objects(style));
-        set_style(&mut world.commands().entity(self.camera), style);
+        let is_lit = self.is_toon && style.scene.is_some();
+        if self.is_toon {
+            set_default_light(world, !is_lit);
+        }
+        let scope = if is_lit {
+            StyleScope::Layers
+        } else {
+            StyleScope::CameraOnly
+        };
+        set_whole_style(&mut world.commands().entity(self.camera), style, scope);
         world.flush();
         let frame = TimeUpdateStrategy::ManualDuration(SHOT / SETTLE);
         self.headless.app.insert_resource(frame);
@@ -106,17 +117,14 @@ impl Studio {
     }
 }
 
-/// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither,
-/// which would speckle flat areas whose tone lies at a step between two bands.
+/// Gives a camera a style without its light: what scenes and examples are made with stays.
 pub fn set_style(camera: &mut EntityCommands, style: &ComicStyle) {
-    let divides = style.get::<ToneBands>().is_some()
-        || style.get::<ToneRamp>().is_some()
-        || style.get::<TwoTone>().is_some();
-    camera.insert(if divides {
-        DebandDither::Disabled
-    } else {
-        DebandDither::Enabled
-    });
+    set_whole_style(camera, style, StyleScope::CameraOnly);
+}
+
+/// Gives a camera a style at once, without an asset.
+fn set_whole_style(camera: &mut EntityCommands, style: &ComicStyle, scope: StyleScope) {
+    camera.insert((Comic::default(), scope));
     style.apply(camera);
 }
 
@@ -202,7 +210,11 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
                 anchor: ScreenAnchor::Object,
                 ..Halftone::default()
             };
-            let screens = style.clone().with(followed).with(Outlines::default());
+            let followed = style.clone().with(followed).with_scene(StyleScene {
+                screens: true,
+                ..default()
+            });
+            let screens = followed.with(Outlines::default());
             vec![
                 ("speed-lines", style.with(SpeedLines { kind, ..lines })),
                 ("object-screens", screens),
@@ -290,6 +302,21 @@ pub fn set_toon(world: &mut World, on: bool) {
     }
 }
 
+/// Gives the parts of the scene without a light of their own the default one, or takes it away.
+fn set_default_light(world: &mut World, on: bool) {
+    for part in roots(world) {
+        match world.get::<ToonScene>(part) {
+            None if on => {
+                world.entity_mut(part).insert(ToonScene::default());
+            }
+            Some(scene) if !on && *scene == ToonScene::default() => {
+                world.entity_mut(part).remove::<ToonScene>();
+            }
+            _ => {}
+        }
+    }
+}
+
 /// The theatre with strokes on all of its materials, and outlines.
 pub fn hatched_theatre() -> image::RgbaImage {
     let mut studio = Studio::new(BuiltIn::Theatre, UVec2::new(320, 180), Msaa::Off);
@@ -308,24 +335,6 @@ pub fn hatched_theatre() -> image::RgbaImage {
     }
     studio.headless.step(4);
     studio.shoot(Some(&ComicStyle::new().with(Outlines::default())))
-}
-
-/// Whether the screens of a style are those of objects with a `PatternAnchor`.
-fn follows_objects(style: &ComicStyle) -> bool {
-    style
-        .get::<Halftone>()
-        .is_some_and(|halftone| halftone.anchor == ScreenAnchor::Object)
-}
-
-/// Gives every part of the scene a screen of its own, or takes it away.
-fn set_screens(world: &mut World, on: bool) {
-    for part in roots(world) {
-        if on {
-            world.entity_mut(part).insert(PatternAnchor::default());
-        } else {
-            world.entity_mut(part).remove::<PatternAnchor>();
-        }
-    }
 }
 
 /// Divides all meshes of the scene into sections.

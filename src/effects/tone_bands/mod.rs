@@ -13,7 +13,7 @@ use crate::{
 ///
 /// Bevy's cameras dither by default. On an area whose tone lies exactly between two
 /// bands, the dither shows as faint dots; `DebandDither::Disabled` on the camera
-/// removes them.
+/// removes them. A style of a [`Comic`](crate::Comic) does that by itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
