@@ -13,7 +13,7 @@ fn main() {
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
     let eye = from(0.0, 12.0, 10.0);
-    commands.spawn((Camera3d::default(), eye, Outlines::default()));
+    commands.spawn((Camera3d::default(), eye, presets::SATURDAY_MORNING.comic()));
 
     let sun = DirectionalLight {
         shadow_maps_enabled: true,
@@ -29,7 +29,6 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>) {
             Mesh3d(assets.add(mesh)),
             MeshMaterial3d(assets.add(paint)),
             Transform::from_translation(place),
-            ToonScene::default(),
         ));
     }
 }

@@ -12,7 +12,7 @@
 //!
 //! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 //!     let at = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::Y, Vec3::Y);
-//!     let style = Comic(assets.load(presets::SATURDAY_MORNING.path()));
+//!     let style = presets::SATURDAY_MORNING.comic();
 //!     commands.spawn((Camera3d::default(), at(2.0, 2.0, 5.0), style));
 //!     let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
 //!     commands.spawn((sun, at(4.0, 8.0, 3.0)));
@@ -24,8 +24,8 @@
 //!
 //! # How it works
 //!
-//! Effects are components on a camera. A style ([`ComicStyle`]) is a set of effects in a file, and
-//! [`Comic`] puts one on a camera. Every frame, for each camera with effects:
+//! Effects are components on a camera. A style ([`ComicStyle`]) is a set of effects in a file, with
+//! a light for the materials of the scene, and [`Comic`] puts one on a camera. Every frame, for each camera with effects:
 //!
 //! 1. The components become a plan. An effect that changes nothing is left out of it, of the passes
 //!    and of the shader; [`ComicsDiagnostics`] reports what ran and why the rest did not.
