@@ -197,6 +197,8 @@ option_by_name!(
 mod tests {
     use super::*;
     use crate::{Comic, ComicsPlugin, Outlines, ToneBands, presets};
+    #[cfg(feature = "toon")]
+    use crate::{StyleTransition, ToonLight, style::TransitionEasing};
 
     /// A camera with settings of its own and a style, in an app without a renderer.
     fn styled(style: ComicStyle) -> (App, Entity, Handle<ComicStyle>) {
@@ -263,6 +265,47 @@ mod tests {
         app.update();
         let own = (DebandDither::Enabled, Msaa::Sample2, Tonemapping::Reinhard);
         assert_eq!(settings(&app, camera), own);
+    }
+
+    #[cfg(feature = "toon")]
+    #[test]
+    fn a_scene_follows_its_file_and_blends() {
+        let lit = |highlight, sections| StyleScene {
+            light: ToonLight {
+                highlight,
+                ..ToonLight::default()
+            },
+            sections,
+            ..StyleScene::default()
+        };
+        let (mut app, camera, handle) = styled(ComicStyle::new().with_scene(lit(1.0, None)));
+        let scene = |app: &App| {
+            let scene = app.world().get::<CameraScene>(camera);
+            scene.map(|scene| scene.0.clone())
+        };
+        assert_eq!(scene(&app), Some(lit(1.0, None)));
+        let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+        styles.get_mut(&handle).expect("a style").scene = Some(lit(2.0, None));
+        for _ in 0..2 {
+            app.update();
+        }
+        assert_eq!(scene(&app), Some(lit(2.0, None)));
+
+        // Lights blend, the rest changes at the end.
+        let target = ComicStyle::new().with_scene(lit(3.0, Some(45.0)));
+        let transition = StyleTransition::to(target, 1.0).with_easing(TransitionEasing::Linear);
+        app.world_mut().entity_mut(camera).insert(transition);
+        app.insert_resource(Time::<()>::default());
+        app.update();
+        let mut clock = app.world_mut().resource_mut::<Time>();
+        clock.advance_by(std::time::Duration::from_millis(500));
+        app.update();
+        assert_eq!(scene(&app), Some(lit(2.5, None)));
+        app.update();
+        assert_eq!(scene(&app), Some(lit(3.0, Some(45.0))));
+        app.world_mut().entity_mut(camera).remove::<Comic>();
+        app.update();
+        assert_eq!(scene(&app), None);
     }
 
     #[test]
