@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{ComicStyle, ComicStyleError, StyleTransition, StyleVolume, presets};
+use super::{ComicStyle, ComicStyleError, StyleTransition, StyleVolume, layer::set_grade, presets};
 use crate::effect::EffectRegistry;
 
 /// Gives a camera the style of a [`ComicStyle`] asset.
@@ -30,6 +30,48 @@ use crate::effect::EffectRegistry;
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct Comic(pub Handle<ComicStyle>);
 
+/// Gives a camera a partial style over that of its [`Comic`], or over its own: for light and weather,
+/// for example, over any style.
+///
+/// It stays while the style below it changes, also by a [`StyleTransition`]. Styles of
+/// [`StyleVolume`]s lie over it. A complete style counts as a partial one. Removing this component
+/// restores the style below.
+#[derive(Component, FromTemplate, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ComicGrade(pub Handle<ComicStyle>);
+
+/// The styles that are new or have changed.
+fn changed(events: &mut MessageReader<AssetEvent<ComicStyle>>) -> Vec<AssetId<ComicStyle>> {
+    let ids = events.read().filter_map(|event| match event {
+        AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    });
+    ids.collect()
+}
+
+pub(super) fn apply_grades(
+    mut commands: Commands,
+    cameras: Query<(Entity, Ref<ComicGrade>)>,
+    mut removed: RemovedComponents<ComicGrade>,
+    mut events: MessageReader<AssetEvent<ComicStyle>>,
+    styles: Res<Assets<ComicStyle>>,
+) {
+    for entity in removed.read().filter(|entity| !cameras.contains(*entity)) {
+        if let Ok(mut camera) = commands.get_entity(entity) {
+            camera.queue(|mut camera: EntityWorldMut| set_grade(&mut camera, None));
+        }
+    }
+    let changed = changed(&mut events);
+    for (entity, grade) in &cameras {
+        if (grade.is_changed() || changed.contains(&grade.0.id()))
+            && let Some(style) = styles.get(&grade.0).cloned()
+            && let Ok(mut camera) = commands.get_entity(entity)
+        {
+            camera.queue(move |mut camera: EntityWorldMut| set_grade(&mut camera, Some(style)));
+        }
+    }
+}
+
 pub(super) fn apply_styles(
     mut commands: Commands,
     cameras: Query<(Entity, Ref<Comic>)>,
@@ -45,13 +87,7 @@ pub(super) fn apply_styles(
             ComicStyle::remove_from(&mut camera);
         }
     }
-    let changed: Vec<_> = events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
-            _ => None,
-        })
-        .collect();
+    let changed = changed(&mut events);
     for (entity, handle) in &cameras {
         if !handle.is_changed() && !changed.contains(&handle.0.id()) {
             continue;
@@ -67,11 +103,13 @@ pub(super) fn apply_styles(
 /// Adds the presets whose [handles](presets::Preset::handle) are used: no asset server loads them.
 pub(super) fn add_presets(
     comics: Query<&Comic, Changed<Comic>>,
+    grades: Query<&ComicGrade, Changed<ComicGrade>>,
     volumes: Query<&StyleVolume, Changed<StyleVolume>>,
     transitions: Query<&StyleTransition, Added<StyleTransition>>,
     mut styles: ResMut<Assets<ComicStyle>>,
 ) {
     let comics = comics.iter().map(|comic| &comic.0);
+    let comics = comics.chain(grades.iter().map(|grade| &grade.0));
     let volumes = volumes.iter().map(|volume| &volume.style);
     let targets = transitions.iter().filter_map(StyleTransition::asset);
     for handle in comics.chain(volumes).chain(targets) {

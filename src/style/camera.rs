@@ -196,7 +196,7 @@ option_by_name!(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Comic, ComicsPlugin, Outlines, ToneBands, presets};
+    use crate::{Comic, ComicsPlugin, Outlines, ToneBands, Vignette, presets, style::ComicGrade};
     #[cfg(feature = "toon")]
     use crate::{StyleTransition, ToonLight, style::TransitionEasing};
 
@@ -265,6 +265,42 @@ mod tests {
         app.update();
         let own = (DebandDither::Enabled, Msaa::Sample2, Tonemapping::Reinhard);
         assert_eq!(settings(&app, camera), own);
+    }
+
+    #[test]
+    fn a_grade_lies_over_whatever_style_a_camera_has() {
+        let (mut app, camera, _) = styled(ComicStyle::new().with(Outlines::default()));
+        let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
+        let dark = styles.add(ComicStyle::new().with(Vignette::default()));
+        let bands = styles.add(ComicStyle::new().with(ToneBands::default()));
+        let set = |app: &mut App, change: &dyn Fn(&mut EntityWorldMut)| {
+            change(&mut app.world_mut().entity_mut(camera));
+            app.update();
+            let camera = app.world().entity(camera);
+            [
+                camera.contains::<Outlines>(),
+                camera.contains::<ToneBands>(),
+                camera.contains::<Vignette>(),
+            ]
+        };
+        let grade = |camera: &mut EntityWorldMut| {
+            camera.insert(ComicGrade(dark.clone()));
+        };
+        assert_eq!(set(&mut app, &grade), [true, false, true]);
+        let other = |camera: &mut EntityWorldMut| {
+            camera.insert(Comic(bands.clone()));
+        };
+        assert_eq!(set(&mut app, &other), [false, true, true]);
+        let ungrade = |camera: &mut EntityWorldMut| {
+            camera.remove::<ComicGrade>();
+        };
+        assert_eq!(set(&mut app, &ungrade), [false, true, false]);
+        set(&mut app, &grade);
+        let unstyle = |camera: &mut EntityWorldMut| {
+            camera.remove::<Comic>();
+        };
+        assert_eq!(set(&mut app, &unstyle), [false, false, true]);
+        assert_eq!(set(&mut app, &ungrade), [false, false, false]);
     }
 
     #[cfg(feature = "toon")]

@@ -13,10 +13,43 @@ use crate::{
 pub(super) struct StyleLayer {
     /// The camera's own style.
     own: ComicStyle,
-    /// The style that lies over it.
+    /// The style that was applied.
+    base: ComicStyle,
+    /// The style that lies over the camera's own: `base`, and the [`Grade`] over it.
     style: ComicStyle,
     /// The result, as it was written to the camera's components.
     written: ComicStyle,
+}
+
+/// On a camera with a [`ComicGrade`](super::ComicGrade) that has loaded: its style, as a partial
+/// one.
+#[derive(Component, Clone, Debug)]
+#[component(clone_behavior = Ignore)]
+struct Grade(ComicStyle);
+
+/// A style with the camera's grade over it.
+pub(super) fn graded(camera: &EntityWorldMut, style: &ComicStyle) -> ComicStyle {
+    match camera.get::<Grade>() {
+        Some(grade) => grade.0.over(style),
+        None => style.clone(),
+    }
+}
+
+/// Gives a camera another grade, or takes it away.
+pub(super) fn set_grade(camera: &mut EntityWorldMut, grade: Option<ComicStyle>) {
+    let nothing = ComicStyle::new().partial();
+    let base = camera.get::<StyleLayer>().map(|layer| layer.base.clone());
+    let has_grade = grade.is_some();
+    match grade {
+        Some(grade) => camera.insert(Grade(grade.partial())),
+        None => camera.remove::<Grade>(),
+    };
+    match base {
+        Some(base) if has_grade || base != nothing => base.lay_over(camera),
+        Some(_) => ComicStyle::take_off(camera),
+        None if has_grade => nothing.lay_over(camera),
+        None => {}
+    }
 }
 
 /// On a camera in volumes.
@@ -145,6 +178,9 @@ impl ComicStyle {
         if camera.take::<StyleLayer>().is_some() {
             own.write(camera);
             set_camera(camera, &Self::new());
+            if camera.contains::<Grade>() {
+                Self::new().partial().lay_over(camera);
+            }
         }
     }
 
@@ -171,10 +207,12 @@ impl ComicStyle {
                 (Some(layer), Some(mut place)) => {
                     let edited = place.below.as_mut().unwrap_or(&mut own);
                     edited.take_edits(&layer.written, &style);
-                    lay_over(&mut camera, own, layer.style, style);
+                    lay_over(&mut camera, own, [layer.base, layer.style], style);
                     camera.insert(place);
                 }
-                (Some(_), None) => lay_over(&mut camera, own, style.clone(), style),
+                (Some(_), None) => {
+                    lay_over(&mut camera, own, [style.clone(), style.clone()], style);
+                }
                 (None, _) => style.write(&mut camera),
             }
         });
@@ -182,8 +220,9 @@ impl ComicStyle {
 
     pub(super) fn lay_over(self, camera: &mut EntityWorldMut) {
         let own = own_style(camera);
-        let written = self.over(&own);
-        lay_over(camera, own, self, written);
+        let style = graded(camera, &self);
+        let written = style.over(&own);
+        lay_over(camera, own, [self, style], written);
     }
 
     /// Changes what differs between two complete styles.
@@ -229,10 +268,11 @@ impl ComicStyle {
 }
 
 /// Writes `written`, a complete style, to the camera, as the result of `style` over its `own` style.
+/// `base`: the style without the camera's grade.
 pub(super) fn lay_over(
     camera: &mut EntityWorldMut,
     own: ComicStyle,
-    style: ComicStyle,
+    [base, style]: [ComicStyle; 2],
     written: ComicStyle,
 ) {
     written.write(camera);
@@ -241,6 +281,7 @@ pub(super) fn lay_over(
     }
     camera.insert(StyleLayer {
         own,
+        base,
         style,
         written,
     });
@@ -266,7 +307,8 @@ fn known_types(camera: &EntityWorldMut) -> Vec<&'static EffectType> {
         .unwrap_or_default()
 }
 
-/// The style that was applied to the camera, with what the game has edited since.
+/// The style that was applied to the camera, with what the game has edited since, else without the
+/// camera's grade.
 pub(super) fn applied_style(camera: &EntityWorldMut) -> Option<ComicStyle> {
     let layer = camera.get::<StyleLayer>()?;
     let registry = camera.world().get_resource::<EffectRegistry>()?;
@@ -275,6 +317,6 @@ pub(super) fn applied_style(camera: &EntityWorldMut) -> Option<ComicStyle> {
     Some(if is_edited {
         current
     } else {
-        layer.style.clone()
+        layer.base.clone()
     })
 }

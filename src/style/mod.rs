@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 
 use bevy::{camera::visibility::VisibilitySystems, prelude::*};
 
-pub use apply::{Comic, ComicTemplate};
+pub use apply::{Comic, ComicGrade, ComicGradeTemplate, ComicTemplate};
 pub use camera::{StyleCamera, StyleDither};
 pub use format::{ComicStyleError, ReadStyle};
 pub use presets::Preset;
@@ -223,6 +223,7 @@ impl Plugin for StylePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleTransition>()
             .register_type::<Comic>()
+            .register_type::<ComicGrade>()
             .register_type::<StyleCamera>()
             .register_type::<StyleVolume>()
             .register_type::<InStyleVolumes>();
@@ -241,6 +242,7 @@ impl StylePlugin {
                 (
                     apply::add_presets,
                     apply::apply_styles,
+                    apply::apply_grades,
                     transition::run_transitions,
                 )
                     .chain(),

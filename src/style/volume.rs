@@ -6,7 +6,7 @@ use bevy::{
 
 use super::{
     ComicStyle, StyleTransition,
-    layer::{PlaceStyle, SeenVolume, StyleLayer, applied_style, lay_over, own_style},
+    layer::{PlaceStyle, SeenVolume, StyleLayer, applied_style, graded, lay_over, own_style},
 };
 
 /// A region with a style of its own: the unit cube under the entity's transform, as of Bevy's
@@ -163,13 +163,14 @@ fn apply(
     }
     let own = own_style(camera);
     // What all of them say nothing about belongs to the game.
-    let mut style = below.clone().unwrap_or_else(|| ComicStyle::new().partial());
+    let base = below.clone().unwrap_or_else(|| ComicStyle::new().partial());
+    let mut style = graded(camera, &base);
     let mut look = style.over(&own);
     for (part, weight) in parts {
         look = look.blend(&part.over(&look), *weight);
         style = part.over(&style);
     }
-    lay_over(camera, own, style, look);
+    lay_over(camera, own, [base, style], look);
     camera.insert(PlaceStyle { volumes, below });
 }
 
