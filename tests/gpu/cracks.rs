@@ -4,7 +4,7 @@
 use bevy_comics_testkit::{
     read_back::CrackWords,
     reference::{
-        crack::{Crack, crack, jump},
+        crack::{Crack, crack, separation},
         draw::Cracks,
         link::{Place, joined, linked},
         planes::column_word,
@@ -136,8 +136,9 @@ fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
             let prepass = small.prepass().expect("depth");
             let map = style.depth_map.unwrap_or_default();
             let view = view_of(&mut small, &prepass, &map, found.rect);
-            let resolved =
-                Resolved::new(&prepass, |near| jump(&outlines) * view.jump_reference(near));
+            let resolved = Resolved::new(&prepass, |near, differ| {
+                separation(&outlines, differ) * view.jump_reference(near)
+            });
             let seen = resolved.view(&view);
 
             let all: HashMap<Place, Crack> = pixels()

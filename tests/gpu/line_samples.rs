@@ -129,6 +129,50 @@ fn assert_silhouettes_move_outwards(directions: impl IntoIterator<Item = u16>) {
     }
 }
 
+/// A plate in front of a wall, by a step that is only a faint silhouette: as two objects or as one
+/// mesh, it has one line all around it. With the object of the first sample, object edges and borders
+/// of sections ran a pixel beside the silhouette here and there.
+#[test]
+fn a_low_step_has_one_line() {
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Sample4);
+    // 1.2 % of the distance from which a view of 45 degrees is as high as this one.
+    let step = 0.012 * 0.5 * SIZE as f32 / 22.5f32.to_radians().tan();
+    // Silhouettes that are object edges too; creases.
+    for (is_one_mesh, kinds) in [(false, 5), (true, 2)] {
+        for degrees in [6.0f32, 33.0, 66.0] {
+            towards_the_sky_again(&mut small, Msaa::Sample4);
+            let turn = Quat::from_rotation_z(degrees.to_radians());
+            let at = Transform::from_xyz(1.3, 0.6, -100.0).with_rotation(turn);
+            let mut wall = Mesh::from(Cuboid::new(200.0, 200.0, 5.0));
+            let plate = Mesh::from(Cuboid::new(60.0, 40.0, 5.0)).translated_by(step * Vec3::Z);
+            if is_one_mesh {
+                wall.merge(&plate).expect("the same attributes");
+            } else {
+                put(&mut small, plate, Color::WHITE, at);
+            }
+            put(&mut small, wall, Color::WHITE, at);
+            ink(&mut small, Outlines::default());
+
+            let words = small.cracks().expect("lines").words;
+            let what = format!("{degrees} degrees, one mesh: {is_one_mesh}");
+            let found: BTreeSet<u32> = words.as_flattened().iter().map(|word| word & 7).collect();
+            assert_eq!(found, BTreeSet::from([0, kinds]), "{what}");
+            let is_line = |side: usize, x: u32, y: u32| words[(y * SIZE + x) as usize][side] != 0;
+            for (x, y) in (1..SIZE).flat_map(|y| (1..SIZE).map(move |x| (x, y))) {
+                // At the corner between four pixels.
+                let east = [y - 1, y].map(|y| is_line(0, x - 1, y));
+                let south = [x - 1, x].map(|x| is_line(1, x, y - 1));
+                let meeting = [east, south]
+                    .as_flattened()
+                    .iter()
+                    .filter(|is| **is)
+                    .count();
+                assert!(matches!(meeting, 0 | 2), "{what}: {meeting} at {x}, {y}");
+            }
+        }
+    }
+}
+
 /// In a viewport of a larger target, in both forms.
 #[test]
 fn a_multisampled_viewport_matches_the_reference() {

@@ -9,7 +9,7 @@ use bevy_comics_testkit::reference::{
     Rgba,
     box_statistics::Sheet,
     color,
-    crack::jump,
+    crack::separation,
     draw::Ink,
     fused::{Input, stylize},
     map::{Frame, Projection},
@@ -168,7 +168,9 @@ pub fn assert_pass_matches_the_reference(
     // This camera stores display codes instead of linear color.
     let encoded = world.get::<CompositingSpace>(small.camera) == Some(&CompositingSpace::Srgb);
     let drawn = outlines.unwrap_or_default();
-    let resolved = Resolved::new(&prepass, |near| jump(&drawn) * view.jump_reference(near));
+    let resolved = Resolved::new(&prepass, |near, differ| {
+        separation(&drawn, differ) * view.jump_reference(near)
+    });
     let seen = resolved.view(&view);
     let paper = style.get::<Paper>();
     let sheet = paper.map_or(sheet::Sheet::SMOOTH, |s| sheet::Sheet::new(s, 1.0, 0));

@@ -287,11 +287,16 @@ const INVISIBLE: f32 = 0.0257;
 // leaves out no ink.
 const BELOW: f32 = 0.999;
 
+// The excess of a step from which it may have ink, as a fraction of what a jump is one of: at the
+// response from which ink is visible, without the division of step_response.
+fn least_silhouette(s: Lines) -> f32 {
+    return BELOW * 2.0 * s.silhouette_k * sqrt(mix(s.silhouette_low, s.silhouette_high, INVISIBLE));
+}
+
 // Whether the excess of a step may have ink. It is true for every step whose ink is not 0
-// after rounding, and for few others: the response at which ink is visible, without the
-// division of step_response. `near` is the larger of both raw depths.
+// after rounding, and for few others. `near` is the larger of both raw depths.
 fn may_be_silhouette(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool> {
-    let least = BELOW * 2.0 * s.silhouette_k * sqrt(mix(s.silhouette_low, s.silhouette_high, INVISIBLE));
+    let least = least_silhouette(s);
     return (excess > least * (s.reference_factor * near + s.reference_constant)) & (near > vec4(0.0));
 }
 

@@ -11,9 +11,11 @@
 //
 // Where no jump in depth separates the first sample from the nearest, normal and object are
 // those of the first. Along a crease, the nearest sample lies on either side in turn, and
-// the crease would be jagged.
+// the crease would be jagged. Between two objects or sections, the step of a faint silhouette is
+// enough: the object edge or crease would run a pixel beside that silhouette.
 
 #import bevy_comics::depth::view::{depth_texel, sample_count, set_view, texel_depth}
+#import bevy_comics::lines::edge::least_silhouette
 #import bevy_comics::lines::pass::line_pass
 #ifdef NORMALS
 #import bevy_comics::depth::normal::normal_texel
@@ -56,8 +58,15 @@ fn nearest_sample(at: vec2<i32>) -> i32 {
 fn surface_sample(at: vec2<i32>, nearest: i32) -> i32 {
     let s = line_pass.settings;
     let near = texel_depth(at, nearest);
-    let jump = s.jump * (s.reference_factor * near + s.reference_constant);
-    return select(nearest, 0, texel_depth(at, 0) >= near - jump);
+    var least = s.jump;
+#ifdef OBJECT_IDS
+#ifdef SILHOUETTES
+    let differ = any(texel_object(at, 0) != texel_object(at, nearest));
+    least = select(least, least_silhouette(s), differ);
+#endif
+#endif
+    let separated = near - least * (s.reference_factor * near + s.reference_constant);
+    return select(nearest, 0, texel_depth(at, 0) >= separated);
 }
 
 @fragment

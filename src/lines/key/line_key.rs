@@ -346,6 +346,7 @@ impl LineKey {
         self & (Self::OBLIQUE | Self::OBJECT_IDS | Self::WIDTH_MAP)
             | Self::DEPTH
             | self.when(Self::NORMALS | Self::FAITHFUL_CREASES | lit, Self::NORMALS)
+            | self.when(Self::OBJECT_IDS, self & Self::SILHOUETTES)
     }
 
     /// The part that blending ink with the history depends on.

@@ -224,7 +224,7 @@ fn drawing() -> Vec<Variant> {
         "DEPTH MULTISAMPLED",
         "| OBLIQUE",
         "| NORMALS",
-        "| OBJECT_IDS",
+        "| OBJECT_IDS | OBJECT_IDS SILHOUETTES",
         "| WIDTH_MAP",
     ];
     const STORED: &str = "| STORED_SRGB | STORED_OKLAB";

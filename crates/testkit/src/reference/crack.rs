@@ -110,6 +110,22 @@ pub fn jump(s: &Outlines) -> f64 {
     f64::from(measured.unwrap_or_default().threshold)
 }
 
+/// The step in depth from which the samples of a pixel are of two surfaces, as a fraction of the
+/// reference. `differ`: they are of two objects or sections.
+pub fn separation(s: &Outlines, differ: bool) -> f64 {
+    let measured = s
+        .silhouettes
+        .filter(|k| k.equations == Equations::Corrected);
+    match measured {
+        Some(k) if differ => {
+            // The response whose ink is half of a step of eight bits, less what rounding may make.
+            let [low, high] = ramp(k.edge_limit, k.softness, weakest(s));
+            0.999 * f64::from(k.threshold) * (low + 0.0257 * (high - low)).sqrt()
+        }
+        _ => jump(s),
+    }
+}
+
 /// 0 to 1 in eight bits. What is half way between two codes is rounded down.
 pub fn stored_byte(value: f64) -> f64 {
     (255.0 * value.clamp(0.0, 1.0) + 0.499).floor() / 255.0

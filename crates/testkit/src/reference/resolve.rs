@@ -18,12 +18,11 @@ pub fn nearest_sample(depths: &[f32]) -> usize {
     chosen
 }
 
-/// The sample whose normal and object are read: the first, unless a jump in depth separates
-/// it from the nearest. `jump`: from the raw depth of the nearest.
-pub fn surface_sample(depths: &[f32], jump: impl Fn(f64) -> f64) -> usize {
-    let nearest = nearest_sample(depths);
+/// The sample whose normal and object are read: the first, unless a step in depth separates
+/// it from the `nearest`. `least`: the height of such a step, from the raw depth of the nearest.
+fn surface_sample(depths: &[f32], nearest: usize, least: impl Fn(f64) -> f64) -> usize {
     let near = f64::from(depths[nearest]);
-    if f64::from(depths[0]) >= near - jump(near) {
+    if f64::from(depths[0]) >= near - least(near) {
         0
     } else {
         nearest
@@ -48,17 +47,23 @@ pub struct Resolved {
 }
 
 impl Resolved {
-    /// `jump`: the jump in raw depth that separates two surfaces, from that of the nearer.
-    pub fn new(prepass: &Prepass, jump: impl Fn(f64) -> f64) -> Self {
+    /// `least`: the step in raw depth that separates two surfaces, from that of the nearer, and from
+    /// whether they are of two objects or sections.
+    pub fn new(prepass: &Prepass, least: impl Fn(f64, bool) -> f64) -> Self {
         let depth = &prepass.depth;
         let samples = depth.samples as usize;
         let depths =
             |bits: &[u32]| -> Vec<f32> { bits.iter().map(|b| f32::from_bits(*b)).collect() };
         let pixels = || depth.bits.chunks_exact(samples).map(depths);
-        let nearest = pixels().map(|depths| nearest_sample(&depths));
-        let surfaces: Vec<usize> = pixels()
-            .map(|depths| surface_sample(&depths, &jump))
-            .collect();
+        let nearest: Vec<usize> = pixels().map(|depths| nearest_sample(&depths)).collect();
+        let differ = |i: usize| {
+            let ids = [0, nearest[i]].map(|s| prepass.ids.get(s).map(|ids| ids.pixels[i]));
+            ids[0] != ids[1]
+        };
+        let surface = |(i, depths): (usize, Vec<f32>)| {
+            surface_sample(&depths, nearest[i], |near| least(near, differ(i)))
+        };
+        let surfaces: Vec<usize> = pixels().enumerate().map(surface).collect();
         let texels = || surfaces.iter().copied().enumerate();
         let normals = prepass.normals.first().map(|first| FloatImage {
             pixels: texels()
@@ -77,8 +82,7 @@ impl Resolved {
             ..first.clone()
         });
         Self {
-            depth_bits: nearest
-                .enumerate()
+            depth_bits: (nearest.iter().enumerate())
                 .map(|(i, s)| depth.bits[i * samples + s])
                 .collect(),
             normals,
