@@ -90,6 +90,9 @@ pub(crate) struct CrackBuffers {
     bends: Option<Buffer>,
     /// Bytes of the planes, and of the corners behind them.
     used: [u64; 2],
+    /// Bytes of the cracks of lines: of the two planes by columns, which are the first ones, and of
+    /// those to the south by rows, which are the last.
+    lines: [u64; 2],
 }
 
 impl CrackBuffers {
@@ -101,6 +104,7 @@ impl CrackBuffers {
         let rows = u64::from(words.x) * u64::from(rect.w);
         let corners = u64::from(rect.z + 1) * u64::from(rect.w / CORNER_ROWS + 1);
         let used = [8 * columns + rows, corners].map(|words| WORD * words);
+        let lines = [2 * columns, rows].map(|words| WORD * words);
         let before = before.map(|b| (Some(b.words), Some(b.planes), b.bends));
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let take = |size: u64, label, old: Option<Buffer>| {
@@ -115,6 +119,7 @@ impl CrackBuffers {
             planes: old_planes.map(|old| take(used.iter().sum(), "comics_crack_planes", old)),
             bends: bends.then(|| take(BENDS * pixels, "comics_crack_bends", old_bends)),
             used,
+            lines,
         }
     }
 
@@ -139,10 +144,15 @@ impl CrackBuffers {
         encoder.clear_buffer(&self.planes[copies % 2], planes, Some(corners));
     }
 
-    /// Copies the planes of a buffer to the other.
-    pub fn copy_planes(&self, encoder: &mut CommandEncoder, from: usize) {
-        let [from, to] = [from, 1 - from].map(|i| &self.planes[i]);
-        encoder.copy_buffer_to_buffer(from, 0, to, 0, self.used[0]);
+    /// Copies the planes of a buffer to the other, after this number of copies. Later passes only add to
+    /// the cracks of lines, so all other planes are copied once.
+    pub fn copy_planes(&self, encoder: &mut CommandEncoder, copies: usize) {
+        let [from, to] = [copies, copies + 1].map(|i| &self.planes[i % 2]);
+        let [columns, rows] = self.lines;
+        let by_rows = self.used[0] - rows;
+        let by_columns = if copies == 0 { by_rows } else { columns };
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, by_columns);
+        encoder.copy_buffer_to_buffer(from, by_rows, to, by_rows, rows);
     }
 
     /// The bindings of `cells.wgsl`.

@@ -44,7 +44,7 @@ impl ReadyCells<'_> {
         for (pass, (pipeline, group)) in &self.passes {
             match (pass, self.holds) {
                 (SearchPass::Link { .. } | SearchPass::Join | SearchPass::CloseGaps, _) => {
-                    self.buffers.copy_planes(encoder, copies % 2);
+                    self.buffers.copy_planes(encoder, copies);
                     copies += 1;
                 }
                 (SearchPass::Hold(_), Some(holds)) => holds.clear(encoder),
