@@ -38,11 +38,12 @@ fn row_word(g: Grid, word: i32, y: i32) -> i32 {
     return ROWS_SOUTH * g.words.y * g.rect.z + y * g.words.x + word;
 }
 
-// The word with the corners (x, 8 * octet) to (x, 8 * octet + 7), behind the planes: four bits each, see
-// corners.wgsl. There is one more corner than pixels in a row and in a column.
-fn corner_word(g: Grid, x: i32, octet: i32) -> i32 {
+// The word with the corners (x, 4 * quad) to (x, 4 * quad + 7), behind the planes: four bits each, see
+// corners.wgsl. Words overlap, so that one of them has any four corners in a column. The first quad is -1. There
+// is one more corner than pixels in a row and in a column.
+fn corner_word(g: Grid, x: i32, quad: i32) -> i32 {
     let first = ROWS_SOUTH * g.words.y * g.rect.z + g.words.x * g.rect.w;
-    return first + octet * (g.rect.z + 1) + x;
+    return first + (quad + 1) * (g.rect.z + 1) + x;
 }
 
 // 32 bits of two words in a row, from bit `first` of the one on.

@@ -73,22 +73,14 @@ fn cracks_from(g: Grid, crack: vec3<i32>) -> u32 {
 // Which of the four cracks at a corner are parts of lines: bit 0 and 1 above and below the
 // corner, bit 2 and 3 to the left and right of it.
 fn cracks_at(g: Grid, corner: vec2<i32>) -> u32 {
-    let eight = planes[corner_word(g, corner.x, corner.y >> 3u)];
-    return (eight >> (4u * u32(corner.y & 7))) & 15u;
-}
-
-fn load_corners(g: Grid, x: i32, octet: i32) -> u32 {
-    let inside = x >= 0 && x <= g.rect.z && octet >= 0 && octet <= g.rect.w >> 3u;
-    return select(0u, planes[corner_word(g, select(0, x, inside), select(0, octet, inside))], inside);
+    let eight = planes[corner_word(g, corner.x, corner.y >> 2u)];
+    return (eight >> (4u * u32(corner.y & 3))) & 15u;
 }
 
 // The same of four corners in a column, from the row `first` on: four bits each. Around the grid there are none.
 fn corner_rows(g: Grid, x: i32, first: i32) -> u32 {
-    let octet = first >> 3u;
-    let row = first & 7;
-    var next = 0u;
-    if row > 4 {
-        next = load_corners(g, x, octet + 1);
-    }
-    return across_words(load_corners(g, x, octet), next, 4u * u32(row)) & 0xffffu;
+    let quad = first >> 2u;
+    let inside = x >= 0 && x <= g.rect.z && quad >= -1 && quad <= g.rect.w >> 2u;
+    let eight = planes[corner_word(g, select(0, x, inside), select(0, quad, inside))];
+    return select(0u, (eight >> (4u * u32(first & 3))) & 0xffffu, inside);
 }

@@ -42,8 +42,8 @@ const CRACKS: u64 = 8;
 const BENDS: u64 = 4;
 /// Bytes of a word of a plane.
 const WORD: u64 = 4;
-/// Corners of a column that share a word.
-const CORNER_ROWS: u32 = 8;
+/// Rows from a word of corners to the next one in a column.
+const CORNER_ROWS: u32 = 4;
 
 /// Bytes of the largest buffer of a view's cracks.
 pub(crate) fn largest_buffer(rect: UVec4) -> u64 {
@@ -102,7 +102,7 @@ impl CrackBuffers {
         let pixels = u64::from(rect.z) * u64::from(rect.w);
         let columns = u64::from(words.y) * u64::from(rect.z);
         let rows = u64::from(words.x) * u64::from(rect.w);
-        let corners = u64::from(rect.z + 1) * u64::from(rect.w / CORNER_ROWS + 1);
+        let corners = u64::from(rect.z + 1) * u64::from(rect.w / CORNER_ROWS + 2);
         let used = [8 * columns + rows, corners].map(|words| WORD * words);
         let lines = [2 * columns, rows].map(|words| WORD * words);
         let before = before.map(|b| (Some(b.words), Some(b.planes), b.bends));

@@ -1,6 +1,6 @@
 // Notes which cracks of lines meet at each corner, so that a step along a line loads one word. See
-// chain.wgsl for what a corner is, and corner_word for where its bits are: 0 and 1 are the cracks above
-// and below it, 2 and 3 those to its left and right.
+// chain.wgsl for what a corner is, and corner_word for where its bits are, in two words: 0 and 1 are the
+// cracks above and below it, 2 and 3 those to its left and right.
 
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
@@ -32,7 +32,7 @@ fn corners(
         return;
     }
     let g = line_pass.grid;
-    let octet = cell.y >> 3u;
+    let quad = cell.y >> 2u;
     var east_before = 0u;
     var south_before = 0u;
     for (var i = 0; i <= COLUMNS; i++) {
@@ -50,10 +50,15 @@ fn corners(
         let own = spread(above) | (spread(east_before) << 1u) | (spread(left) << 2u) | (spread(right) << 3u);
         let next = (above >> 8u) | ((left >> 8u) << 2u) | ((right >> 8u) << 3u);
         if own != 0u {
-            atomicOr(&linked[corner_word(g, x, octet)], own);
+            atomicOr(&linked[corner_word(g, x, quad - 1)], own << 16u);
+            atomicOr(&linked[corner_word(g, x, quad)], own);
+        }
+        let behind = (own >> 16u) | (next << 16u);
+        if behind != 0u {
+            atomicOr(&linked[corner_word(g, x, quad + 1)], behind);
         }
         if next != 0u {
-            atomicOr(&linked[corner_word(g, x, octet + 1)], next);
+            atomicOr(&linked[corner_word(g, x, quad + 2)], next);
         }
         east_before = east;
         south_before = south;
