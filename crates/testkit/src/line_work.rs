@@ -280,8 +280,9 @@ fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
     // Rows of a block, and those above and below that are read.
     let rows = if cracks { 32 + 5 } else { 32 + 2 };
     let walk = &module.entry_points[0].function;
-    let blocks = size.x.div_ceil(4) * size.y.div_ceil(32);
-    let texels = loads(&module, walk, &walk.body, rows) * blocks as usize;
+    // Of two blocks each.
+    let invocations = size.x.div_ceil(8) * size.y.div_ceil(32);
+    let texels = loads(&module, walk, &walk.body, rows) * invocations as usize;
     texels as f64 / f64::from(size.x * size.y)
 }
 

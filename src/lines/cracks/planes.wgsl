@@ -6,7 +6,7 @@
 
 #import bevy_comics::lines::edge::Grid
 
-// Columns and rows of a block, which an invocation of walk.wgsl walks through, and rows
+// Columns and rows of a block, two of which an invocation of walk.wgsl walks through, and rows
 // of a cell, which an invocation of cells.wgsl walks through.
 const COLUMNS: i32 = 4;
 const ROWS: i32 = 32;

@@ -13,7 +13,9 @@
 #endif
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{CELL_ROWS, COLUMNS, GROUP, GROUPS, ROWS}
-#import bevy_comics::lines::rows::{Above, Borders, four_columns, step_down}
+#import bevy_comics::lines::rows::{
+    Above, Borders, Columns, Found, four_columns, load_beside, load_texels, next_columns, step_row,
+}
 #ifdef JUMPS
 #import bevy_comics::depth::view::depth_frame
 #import bevy_comics::lines::jumps::{Jumps, Row, may_jump}
@@ -81,62 +83,103 @@ fn with_gaps(rows: u32) -> u32 {
 }
 #endif
 
-@compute @workgroup_size(32)
-fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
-    set_view(line_pass.seen);
-    let s = line_pass.settings;
-    let last = line_pass.grid.rect.zw - 1;
-    let x = i32(id.x) * COLUMNS;
-    let top = i32(id.y) * ROWS;
-    if x > last.x {
-        return;
-    }
-    let columns = four_columns(line_pass.grid.rect, x);
-    var above: Above;
 #ifdef JUMPS
-    let least = Jumps(depth_frame(), line_pass.grid.jump_least, line_pass.grid.jump_radius);
-    let across = select(vec4(0.0), vec4(1.0), (columns.own > vec4(0)) & (columns.own < last.xxxx));
-    var row_1 = Row(vec4(0.0), vec4(0.0), vec4(0.0));
-    var row_2 = row_1;
-    var jump_rows = 0u;
+// The last two rows of a block.
+struct Last {
+    one: Row,
+    two: Row,
+    // Which of its pixels have neighbors to the west and east.
+    across: vec4<f32>,
+}
+
+fn last_rows(c: Columns) -> Last {
+    let none = Row(vec4(0.0), vec4(0.0), vec4(0.0));
+    let last = vec4(c.last.x);
+    return Last(none, none, select(vec4(0.0), vec4(1.0), (c.own > vec4(0)) & (c.own < last)));
+}
+
+// Whether the map may jump in the row above the one that was found, between rows with neighbors above and
+// below (1) or not (0). Moves on to that one.
+fn jumps_in(least: Jumps, last: ptr<function, Last>, found: Found, along: f32) -> bool {
+    let row = Row(found.before, found.east.here, found.east.there);
+    let jumps = may_jump(least, (*last).two, (*last).one, row, (*last).across, along);
+    (*last).two = (*last).one;
+    (*last).one = row;
+    return jumps;
+}
 #endif
-    // One bit a row: it leaves the word after 32 more rows.
-    var east_rows = 0u;
-    var south_rows = 0u;
-    for (var i = FIRST_ROW; i <= LAST_ROW; i++) {
-        let found = step_down(&above, columns, top + i);
-#ifdef JUMPS
-        let row_0 = Row(found.before, found.east.here, found.east.there);
-        let y_1 = top + i - 1;
-        let along = select(0.0, 1.0, y_1 > 0 && y_1 < last.y);
-        let jumps = may_jump(least, row_2, row_1, row_0, across, along);
-        let is_row = i >= 1 && i <= ROWS;
-        jump_rows = select(jump_rows, (jump_rows >> 1u) | select(0u, 0x80000000u, jumps), is_row);
-        row_2 = row_1;
-        row_1 = row_0;
-#endif
-#ifdef CRACKS
-        let in_block = i >= 0 && i < ROWS;
-        let east = select(0u, 0x80000000u, may_be_cracks(s, found.east));
-        let south = select(0u, 0x80000000u, may_be_cracks(s, found.south));
-        east_rows = select(east_rows, (east_rows >> 1u) | east, in_block);
-        south_rows = (south_rows >> 1u) | south;
-#endif
-    }
-    var rows = east_rows | south_rows;
+
+// Rows of a block: one bit a row, which leaves the word after 32 more rows.
+fn with_row(rows: u32, found: bool) -> u32 {
+    return (rows >> 1u) | select(0u, 0x80000000u, found);
+}
+
+// The rows with cracks to the east (x) and to the south (y), after the row `i` of a block.
+fn with_cracks(rows: vec2<u32>, s: Lines, found: Found, i: i32) -> vec2<u32> {
+    let east = with_row(rows.x, may_be_cracks(s, found.east));
+    let south = with_row(rows.y, may_be_cracks(s, found.south));
+    return vec2(select(rows.x, east, i >= 0 && i < ROWS), south);
+}
+
+// Notes the rows of the block that begins at a pixel, and lists their cells.
+fn store_block(first: vec2<i32>, cracks: u32, jumps: u32) {
+    var rows = cracks;
 #ifdef CRACKS
     for (var cell = 0; cell < ROWS / CELL_ROWS; cell++) {
         let bits = extractBits(rows, u32(cell * CELL_ROWS), u32(CELL_ROWS));
-        if bits != 0u && top + cell * CELL_ROWS <= last.y {
-            list_cell(vec2(id.x, u32(top / CELL_ROWS + cell)));
+        if bits != 0u && first.y + cell * CELL_ROWS < line_pass.grid.rect.w {
+            list_cell(vec2<u32>(vec2(first.x / COLUMNS, first.y / CELL_ROWS + cell)));
         }
     }
 #endif
 #ifdef CLOSED_GAPS
     rows = with_gaps(rows);
 #endif
+    textureStore(block_texture, first / vec2(COLUMNS, ROWS), vec4(rows | jumps));
+}
+
+// Walks down two blocks side by side, which have texels in common.
+@compute @workgroup_size(32)
+fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
+    set_view(line_pass.seen);
+    let s = line_pass.settings;
+    let last = line_pass.grid.rect.zw - 1;
+    let first = vec2<i32>(id.xy) * vec2(2 * COLUMNS, ROWS);
+    if first.x > last.x {
+        return;
+    }
+    let columns = four_columns(line_pass.grid.rect, first.x);
+    let beside = next_columns(columns, first.x);
+    var above: Above;
+    var above_beside: Above;
+    // Rows with cracks and with jumps.
+    var cracks = vec2(0u);
+    var cracks_beside = vec2(0u);
+    var jumps = vec2(0u);
 #ifdef JUMPS
-    rows |= jump_rows;
+    let least = Jumps(depth_frame(), line_pass.grid.jump_least, line_pass.grid.jump_radius);
+    var rows = last_rows(columns);
+    var rows_beside = last_rows(beside);
 #endif
-    textureStore(block_texture, vec2(x / COLUMNS, i32(id.y)), vec4(rows));
+    for (var i = FIRST_ROW; i <= LAST_ROW; i++) {
+        let y = first.y + i;
+        let texels = load_texels(columns, clamp(y, 0, last.y));
+        let found = step_row(&above, columns, y, texels);
+        let found_beside = step_row(&above_beside, beside, y, load_beside(beside, clamp(y, 0, last.y), texels));
+#ifdef JUMPS
+        let along = select(0.0, 1.0, y > 1 && y <= last.y);
+        let jump = jumps_in(least, &rows, found, along);
+        let jump_beside = jumps_in(least, &rows_beside, found_beside, along);
+        let both = vec2(with_row(jumps.x, jump), with_row(jumps.y, jump_beside));
+        jumps = select(jumps, both, i >= 1 && i <= ROWS);
+#endif
+#ifdef CRACKS
+        cracks = with_cracks(cracks, s, found, i);
+        cracks_beside = with_cracks(cracks_beside, s, found_beside, i);
+#endif
+    }
+    store_block(first, cracks.x | cracks.y, jumps.x);
+    if first.x + COLUMNS <= last.x {
+        store_block(first + vec2(COLUMNS, 0), cracks_beside.x | cracks_beside.y, jumps.y);
+    }
 }

@@ -48,11 +48,11 @@ pub(crate) struct Grid {
     pub overshoot: f32,
 }
 
-/// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
+/// Columns and rows of a block.
 const BLOCK: [u32; 2] = [4, 32];
 
-/// Blocks in a workgroup, side by side.
-pub(crate) const WORKGROUP: u32 = 32;
+/// Blocks in a workgroup of `walk.wgsl`, side by side: two for each of 32 invocations.
+pub(crate) const WORKGROUP: u32 = 64;
 
 /// Number of blocks across and down a part of the depth texture.
 pub(crate) fn blocks(rect: UVec4) -> UVec2 {
