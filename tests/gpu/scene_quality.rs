@@ -5,10 +5,12 @@ use bevy::{
     ecs::{query::QueryFilter, system::RunSystemOnce},
     light::{PointLight, SpotLight},
 };
+use bevy_comics::lines::CreaseSource;
 use bevy_comics_testkit::scenes::{ScenePart, Stage, Vantage};
 
 use crate::{
     line_quality::{MOST_FRAGMENTS, Scores, inked, scored, truth},
+    outlines::ink,
     prelude::*,
 };
 
@@ -110,4 +112,31 @@ fn lines_follow_edges(scenes: &[(BuiltIn, [f64; 2])]) {
         assert!(scores.missed() <= most, "{name}: {scores:?}, {rule:?}");
         assert!(fragments <= MOST_FRAGMENTS, "{name}: {scores:?}");
     }
+}
+
+/// A meadow is a crowd of parts, so it is not divided: the edges of meshes change the ink of the
+/// mountains by at most 2 %.
+#[test]
+#[ignore = "long: the mountains"]
+fn edges_of_meshes_add_no_lines_to_a_meadow() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    let vantage = show(&mut small, BuiltIn::Mountains);
+    small.clear();
+    small.insert(vantage.camera());
+    small.insert(Tonemapping::None);
+    let [normals, both] = [CreaseSource::Normals, CreaseSource::Both].map(|source| {
+        let creases = Creases {
+            source,
+            ..default()
+        };
+        let outlines = Outlines {
+            creases: Some(creases),
+            ..scored(2.0)
+        };
+        let ink = ink(&mut small, outlines);
+        ink.into_iter().map(f64::from).sum::<f64>()
+    });
+    println!("ink by normals {normals}, by the edges of meshes too {both}");
+    assert!(normals > 1000.0, "{normals}");
+    assert!((both / normals - 1.0).abs() <= 0.02, "{both}, {normals}");
 }
