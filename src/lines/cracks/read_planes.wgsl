@@ -56,13 +56,7 @@ fn load_along(g: Grid, south: bool, word: i32, across: i32) -> u32 {
     return select(0u, planes[select(0, at, inside)], inside);
 }
 
-// Whether a crack, see chain.wgsl, is part of a line: 1 or 0.
-fn crack_bit(g: Grid, crack: vec3<i32>) -> u32 {
-    let place = select(crack.yx, crack.xy, crack.z == 1);
-    return (load_along(g, crack.z == 1, place.x >> 5u, place.y) >> u32(place.x & 31)) & 1u;
-}
-
-// The same of the 32 cracks in a row that begin with a crack: bit 0 is that one.
+// Which of the 32 cracks in a row that begin with a crack, see chain.wgsl, are parts of lines: bit 0 is that one.
 fn cracks_from(g: Grid, crack: vec3<i32>) -> u32 {
     let south = crack.z == 1;
     let place = select(crack.yx, crack.xy, south);

@@ -10,7 +10,7 @@
     CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST,
     LINKED_SOUTH,
 }
-#import bevy_comics::lines::read_planes::{crack_bit, cracks_from, load_column}
+#import bevy_comics::lines::read_planes::{corner_rows, cracks_from, load_column}
 #ifdef DEPTH
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #ifdef MIDDLE_DEPTH
@@ -106,15 +106,17 @@ fn run_of(g: Grid, crack: vec3<i32>) -> Run {
 // next row.
 fn is_fold_crossed(g: Grid, crack: vec3<i32>) -> bool {
     let p = crack.xy;
-    let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
-    let before = p - across.yx;
-    let side = 1 - crack.z;
-    let beside = crack_bit(g, vec3(p - across, crack.z)) | crack_bit(g, vec3(p + across, crack.z))
-        | crack_bit(g, vec3(p - 2 * across, crack.z)) | crack_bit(g, vec3(p + 2 * across, crack.z))
-        | crack_bit(g, vec3(p - 3 * across, crack.z)) | crack_bit(g, vec3(p + 3 * across, crack.z));
-    let through = crack_bit(g, vec3(before - across, side)) | crack_bit(g, vec3(p - across, side))
-        | crack_bit(g, vec3(before + 2 * across, side)) | crack_bit(g, vec3(p + 2 * across, side));
-    return (beside | through) != 0u;
+    // Corners of a column, four bits each: 1, 4 and 8 are the cracks above, to the left and to the right.
+    if crack.z == 1 {
+        let above = corner_rows(g, p.x + 1, p.y - 2) & 0x0544u;
+        let below = corner_rows(g, p.x + 1, p.y + 2) & 0x0454u;
+        return (above | below | (corner_rows(g, p.x, p.y) & 0x1001u)) != 0u;
+    }
+    let west = corner_rows(g, p.x, p.y) & 0x54u;
+    let east = corner_rows(g, p.x + 2, p.y) & 0x98u;
+    let beyond = corner_rows(g, p.x - 2, p.y) | corner_rows(g, p.x - 1, p.y)
+        | corner_rows(g, p.x + 3, p.y) | corner_rows(g, p.x + 4, p.y);
+    return (west | east | (beyond & 0x10u)) != 0u;
 }
 
 // The depths around a crack, which must be two pixels away from the border of the grid.
@@ -330,10 +332,9 @@ fn is_too_short(g: Grid, crack: vec3<i32>) -> bool {
 
 #ifdef SMOOTH
 // How the line along a crack leaves it, packed. `kept`: whether it is one; `packed`: what the crack is.
-fn packed_bend(g: Grid, crack: vec3<i32>, kept: bool, packed: u32) -> u32 {
+fn packed_bend(g: Grid, crack: vec3<i32>, run: Run, kept: bool, packed: u32) -> u32 {
     var bend = 0x8080u;
     if kept {
-        let run = run_of(g, crack);
         bend = pack_bend(bend_of(crack, run.seen, run.signs));
     }
 #ifdef FOLDS
@@ -349,7 +350,16 @@ fn packed_bend(g: Grid, crack: vec3<i32>, kept: bool, packed: u32) -> u32 {
 // `linked`: whether it was linked; `beside`: for a crack to the south, whether that to the east of
 // its pixel is settled already.
 fn settle_crack(g: Grid, crack: vec3<i32>, linked: bool, beside: bool) {
-    let kept = linked && !(g.min_length > 1 && is_too_short(g, crack));
+    var searched = linked && g.min_length > 1;
+#ifdef SMOOTH
+    let run = run_of(g, crack);
+    // A run of as many cracks is no short piece.
+    searched = searched && i32(run.seen.x + run.seen.y) <= g.min_length;
+#endif
+    var kept = linked;
+    if searched {
+        kept = !is_too_short(g, crack);
+    }
     let at = crack.y * g.rect.z + crack.x;
     var bend = 0x8080u;
 #ifdef EDITS
@@ -360,9 +370,9 @@ fn settle_crack(g: Grid, crack: vec3<i32>, linked: bool, beside: bool) {
 #endif
 #ifdef SMOOTH
 #ifdef FOLDS
-    bend = packed_bend(g, crack, kept, packed);
+    bend = packed_bend(g, crack, run, kept, packed);
 #else
-    bend = packed_bend(g, crack, kept, 0u);
+    bend = packed_bend(g, crack, run, kept, 0u);
 #endif
     let other = select(0x80808080u, bend_words[at], beside);
     bend_words[at] = insertBits(other, bend, 16u * u32(crack.z), 16u);
