@@ -119,11 +119,15 @@ fn find_in_cells(
     var east_before = vec4(0u);
     var all_east: Bits;
     var all_south: Bits;
-    for (var i = -2; i <= CELL_ROWS + 2; i++) {
+    // The first rows only go before others.
+    for (var i = -2; i < 2; i++) {
+        step_down(&above, columns, cell.y + i);
+    }
+    for (var i = 2; i <= CELL_ROWS + 2; i++) {
         let borders = step_down(&above, columns, cell.y + i);
         let east = cracks(s, borders.east);
         let south = cracks(s, borders.south);
-        if i >= 2 && i <= CELL_ROWS + 1 && cell.y + i - 2 <= last.y {
+        if i <= CELL_ROWS + 1 && cell.y + i - 2 <= last.y {
             add_bits(&all_east, east, u32(i - 2));
         }
         let y = cell.y + i - 3;
