@@ -43,7 +43,7 @@
 //! |---|---|
 //! | crate root | the plugin, styles, all effects, and the components that most games use |
 //! | [`presets`] | styles that come with the crate |
-//! | [`style`] | errors and events of styles, transitions |
+//! | [`style`] | errors and events of styles, transitions, pages |
 //! | [`effects`] | modes of the effects, such as [`HalftoneMode`](effects::HalftoneMode) |
 //! | [`lines`] | settings of outlines, such as [`LineWeight`](lines::LineWeight) |
 //! | [`cameras`] | several cameras: overlays, masks; floating origins |
@@ -81,6 +81,7 @@ pub mod objects;
 #[cfg(not(feature = "objects"))]
 mod objects;
 mod origin;
+mod page;
 mod plugin;
 mod readback;
 mod samples;

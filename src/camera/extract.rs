@@ -20,6 +20,7 @@ use crate::{
     fused::{Plan, ViewPlan, set_or_remove},
     objects::{DepthWanted, IdsWanted, ObjectStyles},
     origin::WorldOrigin,
+    page::{LengthScale, PageHeight, PageScale},
 };
 
 pub(super) fn extract_views(
@@ -33,17 +34,19 @@ pub(super) fn extract_views(
                 &CameraPlan,
                 Option<&Projection>,
                 (Option<&CameraCuts>, Option<&EffectTarget>),
+                Option<&PageHeight>,
             ),
             With<Camera3d>,
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, lights, fogs, places, origin): (
+    (objects, lights, fogs, places, origin, players): (
         Extract<Res<ObjectStyles>>,
         Extract<Lights>,
         Extract<Fogs>,
         Extract<Query<&GlobalTransform>>,
         Extract<Option<Res<WorldOrigin>>>,
+        Extract<Res<PageScale>>,
     ),
     #[cfg(feature = "objects")] (backdrops, boxes): (
         Extract<Res<Backdrops>>,
@@ -60,10 +63,11 @@ pub(super) fn extract_views(
     seen.clear();
     let to_light = lights.to_light();
     let origin = WorldOrigin::of(origin.as_deref());
-    for (entity, render_entity, camera, asked, projection, (cuts, target)) in &cameras {
+    for (entity, render_entity, camera, asked, projection, (cuts, target), page) in &cameras {
         if !camera.is_active {
             continue;
         }
+        let scale = LengthScale::new(camera, page, **players);
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
         let mut view = commands.entity(render_entity);
@@ -87,7 +91,8 @@ pub(super) fn extract_views(
             projection: DepthProjection::new(&clip_from_view, projection),
             clip_from_view,
             origin,
-            scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
+            scale_factor: scale.factor,
+            has_page: scale.has_page,
             widest_object: objects.max_width(),
             to_light,
             fog: fogs.of(entity),

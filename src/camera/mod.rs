@@ -32,6 +32,7 @@ use crate::{
     fused::{DeviceLacks, Plan},
     objects::ObjectStyles,
     origin::WorldOrigin,
+    page::{PageHeight, PageScale},
     schedule::{ComicsSystems, RunImpacts},
 };
 #[cfg(feature = "objects")]
@@ -60,6 +61,9 @@ impl Plugin for CameraPlugin {
         app.register_type::<KeyLight>()
             .register_type::<RangeOf>()
             .register_type::<WorldOrigin>()
+            .register_type::<PageHeight>()
+            .register_type::<PageScale>()
+            .init_resource::<PageScale>()
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(

@@ -13,8 +13,11 @@ pub struct EffectContext {
     pub viewport: UVec4,
     /// Width and height of the render target in physical pixels.
     pub target_size: UVec2,
-    /// Physical pixels per logical pixel.
+    /// Physical pixels per unit of the lengths of settings: per logical pixel, or per page pixel if
+    /// the camera has a [`PageHeight`](crate::style::PageHeight).
     pub scale_factor: f32,
+    /// The camera has a page.
+    pub has_page: bool,
     /// World position from normalized device coordinates and the texel of the depth texture.
     pub world_from_clip: Mat4,
     /// Clip space from world space.
@@ -64,6 +67,7 @@ impl Default for EffectContext {
             viewport: UVec4::new(0, 0, 1280, 720),
             target_size: UVec2::new(1280, 720),
             scale_factor: 1.0,
+            has_page: false,
             world_from_clip: Mat4::IDENTITY,
             clip_from_world: Mat4::IDENTITY,
             relative_from_clip: Mat4::IDENTITY,
@@ -90,5 +94,28 @@ impl EffectContext {
     /// game's clock does.
     pub fn animation_seed(&self, rate: f32) -> u32 {
         animation_seed(self.seconds, rate)
+    }
+
+    /// Physical pixels of a cell of a screen, from its size in settings. On a page at least 2.5:
+    /// smaller dots become a plain tone.
+    pub fn cell_size(&self, size: f32) -> f32 {
+        let least = if self.has_page { 2.5 } else { 0.0 };
+        (size * self.scale_factor).max(least)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_on_a_page_can_be_seen() {
+        let mut view = EffectContext {
+            scale_factor: 0.5,
+            ..EffectContext::default()
+        };
+        assert_eq!([3.0, 8.0].map(|size| view.cell_size(size)), [1.5, 4.0]);
+        view.has_page = true;
+        assert_eq!([3.0, 8.0].map(|size| view.cell_size(size)), [2.5, 4.0]);
     }
 }

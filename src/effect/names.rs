@@ -5,8 +5,9 @@ use naga_oil::compose::get_preprocessor_data;
 use super::EffectType;
 
 /// The keys of a style file that do not name an effect.
-pub(crate) const FILE_KEYS: [&str; 6] =
-    ["version", "name", "partial", "depth_map", "camera", "scene"];
+pub(crate) const FILE_KEYS: [&str; 7] = [
+    "version", "name", "partial", "depth_map", "page", "camera", "scene",
+];
 
 /// The modules of this crate that an effect may import.
 const MODULES: [&str; 23] = [

@@ -15,7 +15,11 @@ use super::{
     seeds::seeds_of,
     trail::{Pose, SeedsOf, Trail},
 };
-use crate::{CameraCut, clock, origin::WorldOrigin};
+use crate::{
+    CameraCut, clock,
+    origin::WorldOrigin,
+    page::{LengthScale, PageHeight, PageScale},
+};
 
 /// Marks the entity with the ribbons of an object.
 #[derive(Component)]
@@ -134,7 +138,8 @@ pub(super) struct Paper<'w, 's> {
     meshes: ResMut<'w, Assets<Mesh>>,
     inks: ResMut<'w, Assets<MotionInk>>,
     ribbons: Query<'w, 's, Drawn, (With<RibbonsOf>, Without<MotionLines>)>,
-    cameras: Query<'w, 's, &'static Camera, With<Camera3d>>,
+    cameras: Query<'w, 's, (&'static Camera, Option<&'static PageHeight>), With<Camera3d>>,
+    players: Res<'w, PageScale>,
 }
 
 /// The parts of the entity with the ribbons.
@@ -147,11 +152,13 @@ type Drawn = (
 );
 
 impl Paper<'_, '_> {
-    /// Physical pixels per logical one.
+    /// Physical pixels per unit of length.
     fn scale(&self) -> f32 {
-        let mut active = self.cameras.iter().filter(|camera| camera.is_active);
-        let scale = active.find_map(Camera::target_scaling_factor);
-        scale.unwrap_or(1.0)
+        let mut active = self.cameras.iter().filter(|(camera, _)| camera.is_active);
+        let drawn = active.find(|(camera, _)| camera.target_scaling_factor().is_some());
+        drawn.map_or(1.0, |(camera, page)| {
+            LengthScale::new(camera, page, *self.players).factor
+        })
     }
 
     fn hide(&mut self, ribbons: Option<Entity>) {

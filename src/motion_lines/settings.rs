@@ -53,8 +53,9 @@ pub struct MotionLines {
     /// their width between 0.8 and 1.2 times this. Range 1e-4 to 1e6, default 2.
     #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units / s"))]
     pub min_speed: f32,
-    /// Width at the widest place, in logical pixels. Their size is that of the first active 3D
-    /// camera. Range 0.5 to 16, default 3.
+    /// Width at the widest place, in logical pixels, or in page pixels
+    /// ([`PageHeight`](crate::style::PageHeight)). Their size is that of the first active 3D camera.
+    /// Range 0.5 to 16, default 3.
     #[reflect(@FieldRange::logarithmic(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Color of the ink before tonemapping; its alpha is the opacity. Components are clamped to

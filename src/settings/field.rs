@@ -24,7 +24,8 @@ pub struct FieldRange {
     /// Whether equal ratios, not equal differences, look like equal steps. Sliders
     /// are then logarithmic, and transitions interpolate by ratio.
     pub logarithmic: bool,
-    /// Unit that is written after the number; empty if it has none. `px` are logical pixels.
+    /// Unit that is written after the number; empty if it has none. `px` are logical pixels, or page
+    /// pixels on a camera with a [`PageHeight`](crate::style::PageHeight).
     pub unit: &'static str,
 }
 

@@ -4,7 +4,7 @@ use super::ComicStyle;
 use crate::{
     depth::{DepthMap, RangeSmoothing},
     effect::EffectSet,
-    settings::blend_fields,
+    settings::{blend_fields, blend_ratio},
 };
 
 impl ComicStyle {
@@ -18,6 +18,8 @@ impl ComicStyle {
     ///   out until `t = 0.5`, changes there, and fades in.
     /// * When the mapping of the depth map changes, every effect that reads
     ///   the map does so.
+    /// * Between two pages, the height is interpolated by ratio. Between a page and none, the unit of
+    ///   lengths switches at `t = 0.5`: there, lines and dots jump to another size.
     /// * Settings that cannot be interpolated switch at `t = 0.5`: the strokes of a sketch and
     ///   their rate, `despike`, `locked`.
     /// * What a style does besides is no part of this: settings of the camera switch at `t = 1`, and
@@ -60,6 +62,10 @@ impl ComicStyle {
             name: named.name.clone(),
             depth_map: (a.depth_map.is_some() || b.depth_map.is_some())
                 .then(|| mixed_map(map_a, map_b, t)),
+            page: match (a.page, b.page) {
+                (Some(a), Some(b)) => Some(blend_ratio(a, b, t)),
+                _ => named.page,
+            },
             effects,
             camera: a.camera,
             #[cfg(feature = "toon")]

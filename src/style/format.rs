@@ -162,6 +162,7 @@ impl Serialize for ComicStyle {
         let optional = [
             self.partial,
             self.depth_map.is_some(),
+            self.page.is_some(),
             sets_camera,
             scene.is_some(),
         ];
@@ -175,6 +176,9 @@ impl Serialize for ComicStyle {
         }
         if self.depth_map.is_some() {
             file.serialize_field("depth_map", &self.depth_map)?;
+        }
+        if self.page.is_some() {
+            file.serialize_field("page", &self.page)?;
         }
         if sets_camera {
             file.serialize_field("camera", &self.camera)?;
@@ -237,6 +241,7 @@ impl<'de> Visitor<'de> for StyleSeed<'_> {
                 "name" => style.name = map.next_value()?,
                 "partial" => style.partial = map.next_value()?,
                 "depth_map" => style.depth_map = map.next_value()?,
+                "page" => style.page = map.next_value()?,
                 "camera" => style.camera = map.next_value()?,
                 #[cfg(feature = "toon")]
                 "scene" => {

@@ -6,6 +6,7 @@ use super::{Comic, ComicStyle, camera::set_camera};
 use crate::{
     depth::DepthMap,
     effect::{EffectRegistry, EffectType},
+    page::PageHeight,
 };
 
 /// On a camera that a style was applied to: what it looks like without.
@@ -83,6 +84,10 @@ impl StyleLayer {
         if self.style.depth_map.is_none() {
             self.own.depth_map = current.depth_map;
         }
+        let added_page = self.written.page.is_none() && current.page.is_some();
+        if added_page || (self.style.partial && self.style.page.is_none()) {
+            self.own.page = current.page;
+        }
         self.own
     }
 }
@@ -109,6 +114,7 @@ impl ComicStyle {
         if self.scene.is_some() {
             look.scene.clone_from(&self.scene);
         }
+        look.page = self.page.or(look.page);
         for effect in self.effects.iter() {
             look.insert_any(effect.boxed());
         }
@@ -122,11 +128,12 @@ impl ComicStyle {
     }
 
     /// The components of a camera, as a complete style without a name: its depth
-    /// map and those of its effects that `registry` knows. `camera` and `scene` are those of the
-    /// style that was applied to it.
+    /// map, its page, and those of its effects that `registry` knows. `camera` and `scene` are those
+    /// of the style that was applied to it.
     pub fn of(camera: EntityRef, registry: &EffectRegistry) -> Self {
         let mut style = Self {
             depth_map: camera.get().copied(),
+            page: camera.get::<PageHeight>().map(|page| page.0),
             ..Self::new()
         };
         for effect in registry.types() {
@@ -245,6 +252,9 @@ impl ComicStyle {
         if before.depth_map != after.depth_map {
             self.depth_map = after.depth_map;
         }
+        if before.page != after.page {
+            self.page = after.page;
+        }
         if !before.has_same_surroundings(after) {
             self.take_surroundings(after);
         }
@@ -255,6 +265,10 @@ impl ComicStyle {
         match self.depth_map {
             Some(map) => camera.insert(map),
             None => camera.remove::<DepthMap>(),
+        };
+        match self.page {
+            Some(height) => camera.insert(PageHeight(height)),
+            None => camera.remove::<PageHeight>(),
         };
         for effect in known_types(camera) {
             if self.by_name(effect.name).is_none() {

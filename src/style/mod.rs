@@ -22,6 +22,7 @@ pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
 pub use volume::{InStyleVolumes, StyleVolume};
 
+pub use crate::page::{PageHeight, PageScale};
 #[cfg(all(feature = "toon", feature = "objects"))]
 pub use crate::toon::AddedByStyle;
 #[cfg(feature = "toon")]
@@ -69,6 +70,8 @@ use crate::{
 /// * Both leave the camera's own [`DepthMap`] alone unless they mention
 ///   `depth_map`.
 /// * A partial style without a `scene` keeps that of the style below it.
+/// * Without a `page`, lengths of a complete style are logical pixels; a partial one keeps the
+///   camera's page.
 ///
 /// Effects are the smallest unit: a style that mentions `outlines` sets all fields of
 /// [`Outlines`](crate::Outlines). Applying another style replaces the last one.
@@ -84,6 +87,10 @@ pub struct ComicStyle {
     pub partial: bool,
     /// The depth map. `None` leaves the camera's own alone. Default: `None`.
     pub depth_map: Option<DepthMap>,
+    /// Height of the view in page pixels ([`PageHeight`]): lengths in pixels are relative to it, so
+    /// the view is the same drawing at every size. With `None`, they are logical pixels; a partial
+    /// style leaves the camera's page alone. Range 90 to 4320, default `None`.
+    pub page: Option<f32>,
     /// What cameras with a [`Comic`] have besides effects: dither, samples, tonemapping. Default:
     /// [`StyleCamera::default`].
     pub camera: StyleCamera,
@@ -142,6 +149,15 @@ impl ComicStyle {
     pub fn with_scene(self, scene: StyleScene) -> Self {
         Self {
             scene: Some(scene),
+            ..self
+        }
+    }
+
+    /// The same style on a page of this height in page pixels.
+    #[must_use]
+    pub fn with_page(self, height: f32) -> Self {
+        Self {
+            page: Some(height),
             ..self
         }
     }
@@ -208,6 +224,7 @@ impl ComicStyle {
         }
         Self {
             depth_map: self.depth_map.map(DepthMap::sanitized),
+            page: self.page.map(|height| PageHeight(height).sanitized().0),
             effects,
             #[cfg(feature = "toon")]
             scene: self.scene.clone().map(StyleScene::sanitized),

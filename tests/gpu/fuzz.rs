@@ -61,7 +61,7 @@ const SEED: (&str, usize) = ("speed_lines", 13);
 fn assert_usable(style: &ComicStyle, view: &EffectContext, text: &mut String) {
     let used = style.sanitized();
     assert!(used.sanitized() == used, "{used:?}");
-    assert_finite(&used.depth_map, text);
+    assert_finite(&(used.page, &used.depth_map), text);
     assert_finite(&used.scene, text);
     for effect in used.effects() {
         assert_finite(&effect, text);

@@ -8,7 +8,7 @@ use nv_flip::{FlipImageRgb8, FlipPool};
 
 use crate::prelude::*;
 
-fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
+pub fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
     let rgb = |p: &image::RgbaImage| -> FlipImageRgb8 {
         let bytes: Vec<u8> = p.pixels().flat_map(|p| [p.0[0], p.0[1], p.0[2]]).collect();
         FlipImageRgb8::with_data(p.width(), p.height(), &bytes)

@@ -154,7 +154,8 @@ A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic
 version 2 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
 is an error that names line and column. Every other entry is optional: an effect that is left out is off (in a
 partial style: as the camera has it), a field that is left out has its default. Colors are `\"#rrggbb\"`,
-`\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
+`\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end. Lengths in logical
+pixels are in page pixels where there is a `page`.
 
 Files may be untrusted. Reading a text, using its settings and writing it again allocates at most 1 MiB and 256
 bytes for each byte of the text, and takes less than a second; a test holds texts that are wrong somewhere to both. No
@@ -325,6 +326,8 @@ This page is made from the types by a test, which fails where the two differ.
              | `partial` | bool | Whether effects that the file does not mention stay as the camera has \
              them. Default: `false`. |\n\
              | `depth_map` | Option<DepthMap> | The depth map; the camera's own where absent. |\n\
+             | `page` | Option<f32>, 90 to 4320 | Height of the view in page pixels. Without it, lengths \
+             are in logical pixels. |\n\
              | `camera` | StyleCamera | What cameras with a `Comic` have besides effects. |\n\
              | `scene` | Option<StyleScene> | What cameras with a `Comic` do to the meshes that they \
              see; nothing where absent. |\n"

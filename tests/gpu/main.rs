@@ -67,6 +67,7 @@ mod outlines;
 mod outside;
 mod overshoot;
 mod own_effect;
+mod page_height;
 mod page_scale;
 mod paint;
 mod pairwise;

@@ -21,14 +21,14 @@ const SCREEN: UVec2 = UVec2::new(48, 32);
 const WIDE: UVec2 = UVec2::new(96, 64);
 const TIMES: u32 = 8;
 /// Half a code of the display is at most this much linear light.
-const ROUNDING: f64 = 0.0045;
+pub const ROUNDING: f64 = 0.0045;
 
 /// Linear light of the pixels of a screen, without the last column and row.
-type Light = Vec<[f64; 3]>;
+pub type Light = Vec<[f64; 3]>;
 
 /// The light of a screenshot, reduced to the size of the screen. `from`: the pixel of the
 /// screenshot where the screen's first one begins, in both axes.
-fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
+pub fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
     let (width, height) = (picture.width() / times, picture.height() / times);
     let light: Vec<f64> = (0..=255u8)
         .map(|code| color::srgb_decode([f64::from(code) / 255.0; 3])[0])
@@ -49,7 +49,7 @@ fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
 }
 
 /// The mean of the differences of all pixels.
-fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+pub fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let all = a.iter().flatten().zip(b.iter().flatten());
     let sum: f64 = all.map(|(a, b)| (a - b).abs()).sum();
     sum / (3 * a.len()) as f64
@@ -59,7 +59,7 @@ fn mean(light: &[[f64; 3]]) -> f64 {
     light.iter().flatten().sum::<f64>() / (3 * light.len()) as f64
 }
 
-fn shot(small: &mut Small, style: &ComicStyle, size: UVec2, scale: f32) -> image::RgbaImage {
+pub fn shot(small: &mut Small, style: &ComicStyle, size: UVec2, scale: f32) -> image::RgbaImage {
     small.headless.resize(size, scale);
     let target = small.headless.render_target();
     small.insert(target);

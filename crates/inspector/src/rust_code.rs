@@ -95,6 +95,9 @@ pub fn rust_code(style: &ComicStyle) -> String {
     if let Some(map) = &style.depth_map {
         calls.push(format!(".with_depth_map({})", writer.value(map)));
     }
+    if let Some(height) = &style.page {
+        calls.push(format!(".with_page({})", writer.value(height)));
+    }
     for effect in style.effects() {
         calls.push(format!(".with({})", writer.effect(effect)));
     }

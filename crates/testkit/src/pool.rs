@@ -24,7 +24,9 @@ use bevy::{
     render::{RenderApp, render_resource::PipelineCache},
     time::TimeUpdateStrategy,
 };
-use bevy_comics::{ReduceFlashing, cameras::WorldOrigin, objects::ObjectIdDepthTest};
+use bevy_comics::{
+    ReduceFlashing, cameras::WorldOrigin, objects::ObjectIdDepthTest, style::PageScale,
+};
 
 use crate::{
     headless::{self, Headless, HeadlessOptions},
@@ -208,6 +210,7 @@ fn restore(world: &mut World) {
     world.insert_resource(DefaultOpaqueRendererMethod::default());
     world.insert_resource(ObjectIdDepthTest::default());
     world.insert_resource(ReduceFlashing::default());
+    world.insert_resource(PageScale::default());
     // Known to an app from the start, so that one in which a test inserts it is as it was.
     world.insert_resource(WorldOrigin::default());
     world.remove_resource::<WorldOrigin>();

@@ -173,7 +173,7 @@ impl Effect for Focus {
     }
 
     fn uniform(&self, view: &EffectContext) -> FocusUniform {
-        let cell_size = self.cell_size * view.scale_factor;
+        let cell_size = view.cell_size(self.cell_size);
         let shown = ((cell_size - 1.5) / (2.5 - 1.5)).clamp(0.0, 1.0);
         let middle = view.viewport.xy() + view.viewport.zw() / 2;
         FocusUniform {

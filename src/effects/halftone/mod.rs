@@ -16,7 +16,8 @@ use crate::{
 /// flat area is its color. Screens stand still on the page. Lines and areas of ink are
 /// drawn over the print, and stay sharp. What is brighter than white is printed as white.
 ///
-/// Screens of less than 2.5 physical pixels fade into plain tones. The views of cameras
+/// Screens of less than 2.5 physical pixels fade into plain tones; on a page
+/// ([`PageHeight`](crate::style::PageHeight)), cells are at least that large. The views of cameras
 /// with this effect are styled after FXAA and SMAA, which would smear the dots.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
@@ -254,7 +255,7 @@ impl Effect for Halftone {
     }
 
     fn uniform(&self, view: &EffectContext) -> HalftoneUniform {
-        let cell_size = self.cell_size * view.scale_factor;
+        let cell_size = view.cell_size(self.cell_size);
         let turns = self.angles().map(|degrees| degrees.to_radians());
         let inks = [self.cyan, self.magenta, self.yellow, self.black];
         let [cyan, magenta, yellow, black] =

@@ -19,9 +19,11 @@ pub(crate) struct ViewPlan {
     pub clip_from_view: Mat4,
     /// True position of the origin of the world that is rendered.
     pub origin: DVec3,
-    /// Physical pixels per logical pixel.
+    /// Physical pixels per unit of length, see `LengthScale`.
     pub scale_factor: f32,
-    /// The largest line width that an object overrides, in logical pixels.
+    /// The unit is a page pixel.
+    pub has_page: bool,
+    /// The largest line width that an object overrides, in units of length.
     pub widest_object: f32,
     /// Unit vector towards the light that lines follow, in world space.
     pub to_light: Vec3,

@@ -27,6 +27,7 @@ pub(crate) fn effect_context(
         viewport,
         target_size: camera.physical_target_size.unwrap_or(viewport.zw()),
         scale_factor: view.scale_factor,
+        has_page: view.has_page,
         world_from_clip: world_from_clip(view, extracted),
         clip_from_world,
         relative_from_clip: relative_from_clip(view, extracted),

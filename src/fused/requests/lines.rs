@@ -105,7 +105,11 @@ pub(crate) fn plain_request(
         settings,
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference, bend, scene.right),
-        weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
+        weight: settings.weight.uniform(
+            grid_scale,
+            view.to_light,
+            (settings.ink_budget, least_budget_radius(view)),
+        ),
         boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
         history: history_request(view, &settings, scene),
         cuts: view.cuts,
@@ -136,6 +140,19 @@ pub(crate) fn plain_request(
         jumps: None,
         map_flags: 0,
     })
+}
+
+/// The least radius of the areas in which lines share an ink budget, in physical pixels: on a page, that
+/// of a view whose page pixels are physical pixels, so that a larger view has the same areas. 0 leaves
+/// it to the shader.
+fn least_budget_radius(view: &ViewPlan) -> f32 {
+    /// Two of its smallest squares.
+    const LEAST: f32 = 16.0;
+    if view.has_page {
+        LEAST * view.scale_factor
+    } else {
+        0.0
+    }
 }
 
 /// The fog that lines fade into.

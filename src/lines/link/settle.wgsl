@@ -228,7 +228,7 @@ fn density_at(g: Grid, level: i32) -> f32 {
 fn crowd_weight(g: Grid, width: f32) -> f32 {
     let budget = line_pass.weight.budget;
     let scale = g.from_viewport.x;
-    let radius = scale * budget_radius(budget, width);
+    let radius = scale * max(budget_radius(budget, width), line_pass.weight.least_radius);
     // Most lines of a cell have the same width.
     if radius != known_radius {
         let levels = levels_of(radius);

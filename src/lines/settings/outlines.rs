@@ -100,10 +100,10 @@ pub struct Outlines {
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the distance:
     /// there they are thinner, and below 0.6 physical pixels fainter. Density is measured within
-    /// `2 * width / ink_budget` of a line (at least 16 and at most 1024 physical pixels), with most
-    /// weight in the middle, so single lines, pairs, crossings and branches keep their width.
-    /// Faithful lines have no budget. Needs compute shaders. Range 0.05 to 1 (no limit), default
-    /// 0.35.
+    /// `2 * width / ink_budget` of a line (at least 16 and at most 1024 physical pixels; on a page at
+    /// least 16 page pixels too), with most weight in the middle, so single lines, pairs, crossings
+    /// and branches keep their width. Faithful lines have no budget. Needs compute shaders. Range
+    /// 0.05 to 1 (no limit), default 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub ink_budget: f32,
     /// How lines move: as if each drawing of a film had been inked anew. Default:

@@ -125,8 +125,13 @@ impl LineWeight {
     }
 
     /// The settings as shaders take them. `scale`: pixels of the grid per logical pixel;
-    /// `to_light`: unit vector.
-    pub(crate) fn uniform(&self, scale: f32, to_light: Vec3, budget: f32) -> WeightUniform {
+    /// `to_light`: unit vector; `least_radius`: of areas with a budget, in pixels of the viewport.
+    pub(crate) fn uniform(
+        &self,
+        scale: f32,
+        to_light: Vec3,
+        (budget, least_radius): (f32, f32),
+    ) -> WeightUniform {
         let angle = self.nib_angle.to_radians();
         WeightUniform {
             outer: self.outer,
@@ -142,7 +147,7 @@ impl LineWeight {
             perspective: self.perspective,
             taper: (self.taper * scale).min(LONGEST_TAPER),
             budget,
-            unused: 0.0,
+            least_radius,
         }
     }
 }
@@ -170,5 +175,5 @@ pub(crate) struct WeightUniform {
     perspective: f32,
     taper: f32,
     budget: f32,
-    unused: f32,
+    least_radius: f32,
 }

@@ -22,9 +22,10 @@ struct Weight {
     perspective: f32,
     // Cracks over which a line becomes thinner towards a loose end.
     taper: f32,
-    // Fraction of an area that lines may cover.
+    // Fraction of an area that lines may cover, and the least radius of such an area in pixels of the
+    // viewport.
     budget: f32,
-    unused: f32,
+    least_radius: f32,
 }
 
 // The factor of a crack with these kinds. `outer`: there is sky or another object behind it.

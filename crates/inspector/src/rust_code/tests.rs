@@ -165,6 +165,7 @@ fn only_what_differs_from_the_default_is_written() {
             smoothing: None,
             ..DepthMap::default()
         }),
+        page: Some(540.0),
         ..ComicStyle::new()
     }
     .with(ToneBands::default())
@@ -191,6 +192,7 @@ fn only_what_differs_from_the_default_is_written() {
     smoothing: None,
     ..default()
 })
+.with_page(540.0)
 .with(ToneBands::default())
 .with(BlackFlats {
     slope: Some(0.5),
