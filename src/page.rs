@@ -4,9 +4,9 @@ use bevy::prelude::*;
 
 use crate::settings::{FieldRange, clamp_or_default};
 
-/// On a camera: the height of its view in page pixels. Lengths of its effects and lines are page
-/// pixels, so the view is the same drawing at every size. Without this component, they are logical
-/// pixels.
+/// On a camera: the height of its view in page pixels. Lengths of its effects, its lines and the toon
+/// materials that it sees are page pixels, so the view is the same drawing at every size. Without
+/// this component, they are logical pixels, and physical ones in materials.
 ///
 /// A page pixel is the height of the view divided by this number, but at least 0.5 and at most 4
 /// logical pixels. The view is the camera's own viewport; of a

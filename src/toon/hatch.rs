@@ -31,7 +31,7 @@ impl From<&ToonLight> for HatchUniform {
             return Self::default();
         };
         Self {
-            // A material does not know the scale factor of a window.
+            // In its shader, lengths are multiplied by the scale of the view.
             strokes: hatching.strokes(1.0, 0),
             factor: hatching.at_near,
             rate: hatching.rate,

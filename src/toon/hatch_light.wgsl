@@ -21,8 +21,9 @@
 struct HatchPlace {
     // At rest, in the space of the mesh with the scale of its entity.
     rest: Surface,
-    // Coordinates of the pixel.
+    // Coordinates of the pixel, and pixels per unit of the lengths of strokes.
     pixel: vec2<f32>,
+    scale: f32,
     // Texture coordinates, and how they change from pixel to pixel.
     uv: vec2<f32>,
     right: vec2<f32>,
@@ -30,13 +31,14 @@ struct HatchPlace {
 }
 
 #ifdef HATCH_ART_MAP
-// Ink of the map at coordinates, of a plane that has a part of a tone.
-fn map_ink(at: vec2<f32>, right: vec2<f32>, down: vec2<f32>, tone: f32) -> f32 {
+// Ink of the map at coordinates, of a plane that has a part of a tone, in strokes of this size.
+fn map_ink(at: vec2<f32>, right: vec2<f32>, down: vec2<f32>, scale: f32, tone: f32) -> f32 {
     if tone <= 0.0 {
         return 0.0;
     }
     let repeat = hatch.repeat;
-    return art_ink(art_map, at * repeat, right * repeat, down * repeat, tone);
+    let step = repeat * scale;
+    return art_ink(art_map, at * repeat, right * step, down * step, tone);
 }
 
 // Coverage by strokes of a mean darkness, from the map.
@@ -44,12 +46,12 @@ fn map_cover(at: HatchPlace, tone: f32) -> f32 {
 #ifdef HATCH_REST
     let on = at.rest;
     let w = plane_weights(on.normal);
-    let x = map_ink(on.place.zy, on.across.zy, on.down.zy, plane_tone(tone, w.x));
-    let y = map_ink(on.place.xz, on.across.xz, on.down.xz, plane_tone(tone, w.y));
-    let z = map_ink(on.place.xy, on.across.xy, on.down.xy, plane_tone(tone, w.z));
+    let x = map_ink(on.place.zy, on.across.zy, on.down.zy, at.scale, plane_tone(tone, w.x));
+    let y = map_ink(on.place.xz, on.across.xz, on.down.xz, at.scale, plane_tone(tone, w.y));
+    let z = map_ink(on.place.xy, on.across.xy, on.down.xy, at.scale, plane_tone(tone, w.z));
     return 1.0 - (1.0 - x) * (1.0 - y) * (1.0 - z);
 #else
-    return map_ink(at.uv, at.right, at.down, tone);
+    return map_ink(at.uv, at.right, at.down, at.scale, tone);
 #endif
 }
 #endif
@@ -61,6 +63,8 @@ fn hatch_cover(at: HatchPlace, tone: f32) -> f32 {
 #else
     var s = hatch.strokes;
     s.seed = hatch_drawing(hatch, globals.time);
+    s.spacing *= at.scale;
+    s.length *= at.scale;
 #ifdef HATCH_REST
     let on = at.rest;
 #else

@@ -136,7 +136,8 @@ pub struct ToonLight {
     /// whose lightness is the square root of the fraction of all light that arrives, in the tones
     /// of a ramp. Ambient light and lightmaps always arrive.
     ///
-    /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
+    /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels, or in
+    /// page pixels on a camera with a [`PageHeight`](crate::style::PageHeight).
     /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colors before tonemapping, and
     /// [`at_near`](Hatching::at_near) is the factor of the darkness at all distances.
     /// Dots stay on meshes as strokes do. [`at_far`](Hatching::at_far),

@@ -42,11 +42,12 @@ pub enum RimWidth {
         #[reflect(@FieldRange::FRACTION)]
         softness: f32,
     },
-    /// A constant width in physical pixels, along edges beyond which the next surface is at least 2
-    /// % farther away. It needs the depth prepass, which lines, for example, have; without it, and
-    /// with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
+    /// A constant width in physical pixels, or in page pixels on a camera with a
+    /// [`PageHeight`](crate::style::PageHeight), along edges beyond which the next surface is at
+    /// least 2 % farther away. It needs the depth prepass, which lines, for example, have; without
+    /// it, and with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
     Pixels(
-        /// Width in physical pixels. Range 1 to 64, default 3.
+        /// Width in physical or page pixels. Range 1 to 64, default 3.
         #[reflect(@FieldRange::linear(1.0, 64.0).unit("physical px"), @NotFinite(3.0))]
         f32,
     ),

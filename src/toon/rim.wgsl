@@ -11,7 +11,7 @@ struct Rim {
     // Facing rims: how far from the border, as 1 minus the cosine between normal and eye.
     begin: f32,
     softness: f32,
-    // Rims of constant width: physical pixels.
+    // Rims of constant width: pixels, or page pixels.
     pixels: f32,
     // 0: all around; 1: only on the side of the brightest light.
     lit_side: f32,

@@ -45,7 +45,7 @@ fn beside(s: Surface) -> f32 {
     }
     let into = vec3(view.view_from_world[0].z, view.view_from_world[1].z, view.view_from_world[2].z);
     let recedes = vec2(dot(into, s.foot.position_x), dot(into, s.foot.position_y));
-    let reach = toon.rim.pixels;
+    let reach = toon.rim.pixels * s.scale;
     let slope = reach * dot(recedes, across) / (long * s.view_z);
     let place = s.pixel + across * (reach / long);
     let corner = floor(place - 0.5) + 0.5;

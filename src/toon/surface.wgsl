@@ -33,6 +33,8 @@ struct Surface {
     // Coordinates of the pixel, and z in view space.
     pixel: vec2<f32>,
     view_z: f32,
+    // VIEW_SCALE: pixels per unit of the lengths of materials.
+    scale: f32,
     // Whether shadow maps are read.
     receives: bool,
 }

@@ -166,6 +166,9 @@ struct OwnData {
 #ifdef DETAIL_VISIBLE
     range: ViewRange,
 #endif
+#ifdef VIEW_SCALE
+    scale: f32,
+#endif
 #ifdef HATCHED
     hatch: HatchPlace,
 #endif
@@ -185,6 +188,9 @@ fn surface_of(in: PbrInput, foot: Footprint, own: OwnData) -> Surface {
     s.per_eye_distance = select(inverseSqrt(max(dot(to_eye, to_eye), 1e-8)), 0.0, in.is_orthographic);
     s.tangent = own.tangent;
     s.bias = own.bias;
+#ifdef VIEW_SCALE
+    s.scale = own.scale;
+#endif
 #ifdef DETAIL_VISIBLE
     s.detail = detail_in_range(own.range, in.frag_coord.z, -s.view_z);
 #else
@@ -263,6 +269,9 @@ struct MoreInput {
     @location(11) @interpolate(flat) range_ends: vec4<f32>,
     @location(12) @interpolate(flat) range_scale: vec4<f32>,
 #endif
+#ifdef VIEW_SCALE
+    @location(13) @interpolate(flat) view_scale: f32,
+#endif
 }
 
 #ifdef PROXY
@@ -306,7 +315,11 @@ fn own_data(pbr: PbrInput, in: VertexOutput, more: MoreInput) -> OwnData {
 #ifdef DETAIL_VISIBLE
     own.range = ViewRange(more.range_ends, more.range_scale);
 #endif
+#ifdef VIEW_SCALE
+    own.scale = more.view_scale;
+#endif
 #ifdef HATCHED
+    own.hatch.scale = more.view_scale;
     own.hatch.pixel = in.position.xy;
 #ifdef VERTEX_UVS_A
     own.hatch.uv = in.uv;

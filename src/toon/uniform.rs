@@ -106,6 +106,11 @@ impl From<&ToonLight> for ToonKey {
 }
 
 impl ToonKey {
+    /// Whether lengths depend on the view.
+    fn is_scaled(self) -> bool {
+        self.hatch.is_some() || self.even_rim
+    }
+
     pub(super) fn reads_smoothed(self) -> bool {
         self.proxy == Some(ProxyKey::Smoothed)
     }
@@ -125,6 +130,7 @@ impl ToonKey {
             (smoothed, "PROXY_SMOOTHED"),
             (other_normal, "PROXY_NORMAL"),
             (self.visible, "DETAIL_VISIBLE"),
+            (self.is_scaled(), "VIEW_SCALE"),
         ]);
         found.collect()
     }
@@ -152,6 +158,7 @@ impl ToonKey {
             (of_vertices || of_map, "THRESHOLD"),
             (self.rim, "RIM"),
             (self.even_rim && has(&["DEPTH_PREPASS"]), "DEPTH_RIM"),
+            (self.is_scaled(), "VIEW_SCALE"),
         ]);
         let ramp = self.ramp.into_iter().flat_map(RampKey::definitions);
         let shape_and_frame = self.stylized_highlight.map(|(shape, frame)| {

@@ -1,6 +1,6 @@
 // The engine's vertex shader of meshes (bevy_pbr/src/render/mesh.wgsl), with more outputs: where a
 // vertex was before morphing and skinning, for strokes on surfaces; its normal on a simpler form; the
-// visible range of the view.
+// visible range of the view; the scale of lengths in it.
 
 #import bevy_pbr::{
     forward_io::Vertex,
@@ -17,6 +17,9 @@
 #endif
 #ifdef DETAIL_VISIBLE
 #import bevy_comics::toon::view_range::range_of_view
+#endif
+#ifdef VIEW_SCALE
+#import bevy_comics::toon::view_range::scale_of_view
 #endif
 
 // `VertexOutput` of bevy_pbr::forward_io, and more.
@@ -56,6 +59,9 @@ struct MoreOutput {
     // `ViewRange` of bevy_comics::toon::visible.
     @location(11) @interpolate(flat) range_ends: vec4<f32>,
     @location(12) @interpolate(flat) range_scale: vec4<f32>,
+#endif
+#ifdef VIEW_SCALE
+    @location(13) @interpolate(flat) view_scale: f32,
 #endif
 }
 
@@ -157,6 +163,9 @@ fn vertex(
     let range = range_of_view();
     out.range_ends = range.ends;
     out.range_scale = range.scale;
+#endif
+#ifdef VIEW_SCALE
+    out.view_scale = scale_of_view();
 #endif
 #ifdef VERTEX_UVS_A
     out.uv = moved.uv;

@@ -1,4 +1,5 @@
-//! The visible ranges of all views, for materials: a texture with a column for each view.
+//! The visible ranges of all views and the scales of their lengths, for materials: a texture with a
+//! column for each view.
 //!
 //! A bind group of a material belongs to no view, so its shader looks for the column of the view
 //! that it draws. The CPU writes what tells views apart before the frame is drawn; each view copies
@@ -6,6 +7,7 @@
 
 use bevy::{
     asset::{RenderAssetUsages, uuid_handle},
+    camera::MainPassResolutionOverride,
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::entity::EntityHashMap,
     prelude::*,
@@ -27,6 +29,7 @@ use crate::{
     depth::{
         DepthMap, DepthMapping, MaterialsReadRange, prepare::ViewDepthRange, request::RangeRequest,
     },
+    fused::ViewPlan,
     schedule::{ComicsSystems, PrepareComics},
 };
 
@@ -105,59 +108,91 @@ pub(super) fn build_render(app: &mut App) {
         );
 }
 
-/// The column of each view in this frame.
+/// The column of each view with a range in this frame.
 #[derive(Resource, Default)]
 struct RangeColumns(EntityHashMap<u32>);
 
+/// Pixels of the main pass per unit of the lengths of materials.
+fn scale_of(
+    view: &ExtractedView,
+    plan: &ViewPlan,
+    size: Option<&MainPassResolutionOverride>,
+) -> f32 {
+    // Without a page, the unit is a pixel of the main pass.
+    if !plan.has_page {
+        return 1.0;
+    }
+    let height = size.map_or(view.viewport.w, |size| size.0.y);
+    plan.scale_factor * (height as f32 / view.viewport.w.max(1) as f32)
+}
+
 /// What the CPU knows of a column, row by row. See `view_range.wgsl`.
-fn column(view: &ExtractedView, request: &RangeRequest) -> [[u32; 4]; ROWS] {
-    let frame = request.projection.frame(&DepthMap {
-        mapping: DepthMapping::MinMaxLogarithmic,
-        ..request.map
-    });
-    let bits = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];
+fn column(view: &ExtractedView, request: Option<&RangeRequest>, scale: f32) -> [[u32; 4]; ROWS] {
+    let frame = |request: &RangeRequest| {
+        request.projection.frame(&DepthMap {
+            mapping: DepthMapping::MinMaxLogarithmic,
+            ..request.map
+        })
+    };
+    // Without a range, the shader does not read these.
+    let frame = request.map(frame).unwrap_or_default();
+    let nearest = request.map_or(0.0, |request| request.raw.nearest);
+    let bits = |v: Vec3, w: f32| v.extend(w).to_array().map(f32::to_bits);
     let clip = view.clip_from_view;
     let [x, y] = Vec2::new(clip.x_axis.x, clip.y_axis.y).to_array();
     [
         // The range, which is copied later.
         [0; 4],
         [frame.offset, frame.floor, frame.plane_far, frame.extent].map(f32::to_bits),
-        [
-            frame.flags,
-            request.raw.nearest.to_bits(),
-            x.to_bits(),
-            y.to_bits(),
-        ],
+        [frame.flags, nearest.to_bits(), x.to_bits(), y.to_bits()],
         view.viewport.as_vec4().to_array().map(f32::to_bits),
-        bits(view.world_from_view.translation()),
-        bits(view.world_from_view.to_matrix().z_axis.truncate()),
+        bits(view.world_from_view.translation(), scale),
+        bits(view.world_from_view.to_matrix().z_axis.truncate(), 0.0),
     ]
 }
 
-/// Gives each view with a range a column, while some material reads it.
+/// Gives a column to each view that has a range, while some material reads it, or a scale other
+/// than 1.
 fn write_columns(
-    views: Query<(Entity, &ExtractedView, &RangeRequest)>,
+    views: Query<(
+        Entity,
+        &ExtractedView,
+        &ViewPlan,
+        Option<&RangeRequest>,
+        Option<&MainPassResolutionOverride>,
+    )>,
     images: Res<RenderAssets<GpuImage>>,
     queue: Res<RenderQueue>,
-    mut columns: ResMut<RangeColumns>,
+    mut ranges: ResMut<RangeColumns>,
+    mut has_columns: Local<bool>,
 ) {
-    let was_empty = columns.0.is_empty();
-    columns.0.clear();
+    ranges.0.clear();
     let Some(image) = images.get(&TEXTURE) else {
         return;
     };
     let mut written = Vec::new();
-    let mut read = views.iter().filter(|(.., request)| request.materials);
-    for (entity, view, request) in read.by_ref().take(COLUMNS as usize) {
-        columns.0.insert(entity, written.len() as u32);
-        written.push(column(view, request));
+    let mut read = views
+        .iter()
+        .filter_map(|(entity, view, plan, request, size)| {
+            let request = request.filter(|request| request.materials);
+            let scale = scale_of(view, plan, size);
+            (request.is_some() || scale != 1.0).then_some((entity, view, request, scale))
+        });
+    for (entity, view, request, scale) in read.by_ref().take(COLUMNS as usize) {
+        if request.is_some() {
+            ranges.0.insert(entity, written.len() as u32);
+        }
+        written.push(column(view, request, scale));
     }
     if read.next().is_some() {
-        warn_once!("in more than {COLUMNS} views, materials do not find the visible range");
+        warn_once!(
+            "in more than {COLUMNS} views, materials do not find the visible range and the page"
+        );
     }
-    if was_empty && written.is_empty() {
+    if written.is_empty() && !*has_columns {
         return;
     }
+    *has_columns = !written.is_empty();
     if written.len() < COLUMNS as usize {
         // An empty one ends the search.
         written.push([[0; 4]; ROWS]);

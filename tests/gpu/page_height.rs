@@ -1,14 +1,16 @@
 //! Lengths in page pixels: a style is the same drawing at every height of the view.
 
 use bevy::camera::ClearColorConfig;
-use bevy_comics::style::{PageScale, Preset};
+use bevy_comics::style::{PageHeight, PageScale, Preset};
 use bevy_comics_testkit::reference::color;
 use image::{Rgba, RgbaImage, imageops::crop_imm};
 
 use crate::{
     golden::flip_mean,
+    hatched_material::{ball, light_from, with},
     page_scale::{self, ROUNDING, reduced, shot},
     prelude::*,
+    ramp::{drawn, put, room, set_light},
 };
 
 /// A view whose height is the least one of a page.
@@ -89,6 +91,54 @@ fn every_view_has_the_page_pixels_of_its_own_height() {
         let differ = changed(&part, alone, 3);
         assert!(differ < 0.002, "{differ} of the view at {y}");
     }
+}
+
+/// Truth: on a page, strokes, dots and rims of a material are those of settings that are as many
+/// times larger, bit for bit.
+#[test]
+fn materials_have_page_pixels() {
+    let hatched = |kind| {
+        move |times: f32| {
+            with(Hatching {
+                spacing: 4.0 * times,
+                length: 80.0 * times,
+                ..crate::hatching::plain(kind)
+            })
+        }
+    };
+    let rim = |times: f32| ToonLight {
+        rim: Some(Rim {
+            width: RimWidth::Pixels(4.0 * times),
+            lit_side: 0.0,
+            ..default()
+        }),
+        ..default()
+    };
+    let mut small = room(SIZE * 2, 0.2);
+    // For the rim.
+    small.insert(DepthPrepass);
+    light_from(&mut small, -Vec3::Z, 0.6);
+    put(
+        &mut small,
+        ball(),
+        &ToonLight::default(),
+        Transform::IDENTITY,
+    );
+    assert_scaled(&mut small, "strokes", hatched(HatchingKind::Strokes));
+    assert_scaled(&mut small, "dots", hatched(HatchingKind::Dots));
+    assert_scaled(&mut small, "rims", rim);
+}
+
+/// The view has twice the height of the page.
+fn assert_scaled(small: &mut Small, what: &str, light: impl Fn(f32) -> ToonLight) {
+    set_light(small, &light(2.0));
+    let large = drawn(small);
+    set_light(small, &light(1.0));
+    let unscaled = changed(&drawn(small), &large, 20);
+    assert!(unscaled > 0.01, "{what}: {unscaled}");
+    small.insert(PageHeight(PAGE));
+    assert_eq!(apart(&drawn(small), &large), 0, "{what}");
+    small.camera_mut().remove::<PageHeight>();
 }
 
 /// The sizes at which a page of 540 is drawn, in multiples of the first.

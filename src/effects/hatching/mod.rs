@@ -266,7 +266,7 @@ impl Effect for Hatching {
 }
 
 impl Hatching {
-    /// The strokes of a drawing. `scale`: physical pixels per logical pixel.
+    /// The strokes of a drawing. `scale`: physical pixels per unit of length.
     pub(crate) fn strokes(&self, scale: f32, seed: u32) -> Strokes {
         let [x, y, z] = self.axes();
         Strokes {

@@ -19,6 +19,7 @@ use crate::{
     diagnostics::SkipReason,
     lines::{CreaseSource, Creases, LineFog, Outlines, Silhouettes, has_fog},
     objects::ObjectChanges,
+    page::PageHeight,
 };
 
 /// An effect in a camera's plan.
@@ -111,7 +112,9 @@ impl Plan {
             || plan.objects.highlights
             || plan.readback
             || plan.histogram
-            || plan.view.is_some())
+            || plan.view.is_some()
+            // Materials have its lengths.
+            || camera.contains::<PageHeight>())
         {
             return None;
         }
