@@ -6,7 +6,13 @@ use super::EffectType;
 
 /// The keys of a style file that do not name an effect.
 pub(crate) const FILE_KEYS: [&str; 7] = [
-    "version", "name", "partial", "depth_map", "page", "camera", "scene",
+    "version",
+    "name",
+    "partial",
+    "depth_map",
+    "page",
+    "camera",
+    "scene",
 ];
 
 /// The modules of this crate that an effect may import.
