@@ -10,10 +10,7 @@ use bevy::{
     },
 };
 
-use super::{
-    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
-    view::RANGE_SIZE,
-};
+use super::{ProjectionKind, RangeSmoothing, frame::DepthProjection, view::RANGE_SIZE};
 use crate::gpu::buffer;
 
 /// Bits of [`SmoothingUniform::flags`], as in `level.wgsl`.
@@ -55,14 +52,28 @@ fn approach(seconds: f32, constant: f32) -> f32 {
     }
 }
 
+/// How a range is smoothed in a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    pub smoothing: RangeSmoothing,
+    /// The range stays as it is.
+    pub locked: bool,
+    pub projection: DepthProjection,
+    /// Number of cuts of the camera so far, and size of the viewport in physical pixels.
+    pub origin: (u32, UVec2),
+    /// Real time since the last frame, in seconds.
+    pub seconds: f32,
+}
+
 impl SmoothingUniform {
-    pub fn new(
-        map: &DepthMap,
-        projection: &DepthProjection,
-        seconds: f32,
-        [snap, reset, begin]: [bool; 3],
-    ) -> Self {
-        let smoothing = map.smoothing.unwrap_or(RangeSmoothing::OFF);
+    fn new(followed: &Followed, [snap, reset, begin]: [bool; 3]) -> Self {
+        let Followed {
+            smoothing,
+            locked,
+            projection,
+            seconds,
+            ..
+        } = *followed;
         let orthographic = projection.kind() == ProjectionKind::Orthographic;
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         Self {
@@ -77,7 +88,7 @@ impl SmoothingUniform {
                 | flag(snap, SNAP)
                 | flag(reset, RESET)
                 | flag(begin, BEGIN)
-                | flag(map.locked, HOLD)
+                | flag(locked, HOLD)
                 | flag(smoothing.despike, DESPIKE),
         }
     }
@@ -116,7 +127,7 @@ pub(crate) struct ViewSmoothing {
 }
 
 impl ViewSmoothing {
-    pub fn new(device: &RenderDevice, request: &RangeRequest, size: UVec2) -> Self {
+    pub fn new(device: &RenderDevice, followed: &Followed) -> Self {
         let buffer =
             |label, size, usage| buffer(device, label, size, BufferUsages::STORAGE | usage);
         Self {
@@ -127,8 +138,8 @@ impl ViewSmoothing {
                 BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
             ),
             histogram: None,
-            origin: (request.cuts, size),
-            projection: request.projection,
+            origin: followed.origin,
+            projection: followed.projection,
             snap: AtomicBool::new(false),
             reset: AtomicBool::new(false),
             locked: false,
@@ -136,27 +147,21 @@ impl ViewSmoothing {
         }
     }
 
-    /// The uniform of this frame. Compares the request with that of the last frame. `begin`: the
-    /// middle was not found in that one.
-    pub fn uniform(
-        &mut self,
-        request: &RangeRequest,
-        size: UVec2,
-        begin: bool,
-    ) -> SmoothingUniform {
-        let is_other = self.origin != (request.cuts, size);
+    /// The uniform of this frame. Compares the frame with the last one. `begin`: the middle was not
+    /// found in that one.
+    pub fn uniform(&mut self, followed: &Followed, begin: bool) -> SmoothingUniform {
+        let is_other = self.origin != followed.origin;
         if is_other {
-            self.origin = (request.cuts, size);
+            self.origin = followed.origin;
             self.snap = AtomicBool::new(true);
         }
-        if !self.projection.same_raw_depth(&request.projection) {
+        if !self.projection.same_raw_depth(&followed.projection) {
             self.reset = AtomicBool::new(true);
         }
-        self.projection = request.projection;
-        self.locked = request.map.locked;
+        self.projection = followed.projection;
+        self.locked = followed.locked;
         let [snap, reset] = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
-        let starts = [snap, reset, begin || is_other];
-        SmoothingUniform::new(&request.map, &request.projection, request.seconds, starts)
+        SmoothingUniform::new(followed, [snap, reset, begin || is_other])
     }
 
     /// Creates or drops the buffer of the histogram.

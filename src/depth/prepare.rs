@@ -201,14 +201,14 @@ impl ViewDepthRange {
         uniforms: &mut RangeUniforms,
         (device, textures): (&RenderDevice, &mut TextureCache),
     ) {
-        let size = request.viewport;
         if passes.smoothing.is_some() {
+            let followed = request.followed();
             let smoothing = self
                 .smoothing
-                .get_or_insert_with(|| ViewSmoothing::new(device, request, size));
+                .get_or_insert_with(|| ViewSmoothing::new(device, &followed));
             smoothing.keep_histogram(device, passes.counts);
             let begin = self.passes.middle.is_none();
-            let uniform = smoothing.uniform(request, size, begin);
+            let uniform = smoothing.uniform(&followed, begin);
             smoothing.uniform_offset = uniforms.smoothings.push(&uniform);
         } else {
             self.smoothing = None;

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::{DepthMap, RawDepth, frame::DepthProjection};
+use super::{DepthMap, RangeSmoothing, RawDepth, follow::Followed, frame::DepthProjection};
 
 /// On a view in the render world: a request for its visible range, written in every
 /// frame by [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
@@ -41,6 +41,17 @@ pub(crate) struct RangeRequest {
 }
 
 impl RangeRequest {
+    /// How the range is smoothed.
+    pub fn followed(&self) -> Followed {
+        Followed {
+            smoothing: self.map.smoothing.unwrap_or(RangeSmoothing::OFF),
+            locked: self.map.locked,
+            projection: self.projection,
+            origin: (self.cuts, self.viewport),
+            seconds: self.seconds,
+        }
+    }
+
     /// Whether the smoothed range is bounded by percentiles.
     pub fn has_outliers(&self) -> bool {
         self.smooths && self.map.smoothing.is_some_and(|s| s.outliers > 0.0)
