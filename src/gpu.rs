@@ -9,6 +9,7 @@ use bevy::render::{
     renderer::RenderQueue,
 };
 use bevy::{
+    camera::CompositingSpace,
     image::ToExtents,
     math::UVec2,
     render::{
@@ -123,6 +124,16 @@ pub(crate) fn definitions<const N: usize>(
 ) -> impl Iterator<Item = ShaderDefVal> {
     let set = flags.into_iter().filter(|(on, _)| *on);
     set.map(|(_, name)| name.into())
+}
+
+/// The definition of how a picture is stored.
+pub(crate) fn stored(space: CompositingSpace) -> Option<ShaderDefVal> {
+    let name = match space {
+        CompositingSpace::Linear => return None,
+        CompositingSpace::Srgb => "STORED_SRGB",
+        CompositingSpace::Oklab => "STORED_OKLAB",
+    };
+    Some(name.into())
 }
 
 /// Whether something with this room is used again where less is needed: not if it is over four

@@ -143,6 +143,30 @@ fn split_bands(levels: f32, splits: f32, y: f32, step_width: f32) -> f32 {
     return mix(fewer, banded(2.0 * bands, y, step_width), smoothstep(0.0, 1.0, splits - whole));
 }
 
+// The picture, after tonemapping, in the compositing space of the camera, as linear
+// light: the effects work on linear light.
+fn to_linear(stored: vec3<f32>) -> vec3<f32> {
+    let c = finite_color(stored);
+#ifdef STORED_SRGB
+    return srgb_decode(c);
+#else ifdef STORED_OKLAB
+    return oklab_to_linear(c);
+#else
+    return c;
+#endif
+}
+
+// The inverse of to_linear.
+fn to_stored(linear: vec3<f32>) -> vec3<f32> {
+#ifdef STORED_SRGB
+    return srgb_encode(linear);
+#else ifdef STORED_OKLAB
+    return linear_to_oklab(linear);
+#else
+    return linear;
+#endif
+}
+
 // Moves a color towards the gray of its OKLab lightness, as little as possible, until all
 // components are from 0 to 1, or within those of `before` if these are beyond.
 fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {

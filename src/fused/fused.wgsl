@@ -15,7 +15,7 @@
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::view::{View, depth_frame, depth_pixel, inside_viewport, load_depth, pixel_depth, set_view}
 #import bevy_comics::effect::color::{
-    finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
+    finite, finite_color, lightness, srgb_decode, srgb_encode, to_linear, to_stored,
 }
 #import bevy_comics::effect::box_statistics::{half_side, mean_along, packed_means}
 #import bevy_comics::effect::aux_scalar::{load_aux_scalar, packed_number}
@@ -53,30 +53,6 @@ struct Comics {
 @group(0) @binding(0) var source: texture_2d<f32>;
 #endif
 @group(0) @binding(1) var<uniform> comics: Comics;
-
-// The picture, after tonemapping, in the compositing space of the camera, as linear
-// light: the effects work on linear light.
-fn to_linear(stored: vec3<f32>) -> vec3<f32> {
-    let c = finite_color(stored);
-#ifdef STORED_SRGB
-    return srgb_decode(c);
-#else ifdef STORED_OKLAB
-    return oklab_to_linear(c);
-#else
-    return c;
-#endif
-}
-
-// The inverse of to_linear.
-fn to_stored(linear: vec3<f32>) -> vec3<f32> {
-#ifdef STORED_SRGB
-    return srgb_encode(linear);
-#else ifdef STORED_OKLAB
-    return linear_to_oklab(linear);
-#else
-    return linear;
-#endif
-}
 
 // The unstyled picture at a pixel, as it is stored.
 fn load_source(pixel: vec2<i32>) -> vec4<f32> {

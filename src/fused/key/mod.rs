@@ -29,7 +29,7 @@ use super::{
 use crate::{
     composite::{BeyondPrepass, DRAWN_DEPTH_BINDING, DebugView, OwnPixels},
     depth::view::ViewUniform,
-    gpu::{UNFILTERABLE, sampled},
+    gpu::{UNFILTERABLE, sampled, stored},
     lines::{Outlines, ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_depths_entry, object_styles_entry},
     samples,
@@ -317,11 +317,6 @@ impl StylizeKey {
     }
 
     pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
-        let space = match self.space {
-            CompositingSpace::Linear => None,
-            CompositingSpace::Srgb => Some("STORED_SRGB"),
-            CompositingSpace::Oklab => Some("STORED_OKLAB"),
-        };
         let needs = |need| self.needs.contains(need);
         let number = |name: &str, value| ShaderDefVal::UInt(name.into(), value);
         [
@@ -367,8 +362,8 @@ impl StylizeKey {
         ]
         .into_iter()
         .filter_map(|(on, name)| on.then_some(name))
-        .chain(space)
         .map(ShaderDefVal::from)
+        .chain(stored(self.space))
         .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))

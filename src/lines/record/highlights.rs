@@ -20,7 +20,7 @@ use bevy::{
 
 use crate::{
     bind_groups::Binder,
-    gpu::{UNFILTERABLE, attachment, entry},
+    gpu::{UNFILTERABLE, attachment, entry, stored},
     lines::{
         passes::LinePasses,
         prepare::ViewLines,
@@ -63,13 +63,8 @@ impl HighlightKey {
     }
 
     fn defs(self) -> Vec<ShaderDefVal> {
-        let space = match self.space {
-            CompositingSpace::Linear => None,
-            CompositingSpace::Srgb => Some("STORED_SRGB".into()),
-            CompositingSpace::Oklab => Some("STORED_OKLAB".into()),
-        };
         let styles = ["OBJECT_STYLES".into()];
-        styles.into_iter().chain(space).collect()
+        styles.into_iter().chain(stored(self.space)).collect()
     }
 }
 

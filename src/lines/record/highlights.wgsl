@@ -1,23 +1,12 @@
 // Draws the lines of highlighted objects over the picture.
 
-#import bevy_comics::effect::color::{linear_to_oklab, srgb_encode}
+#import bevy_comics::effect::color::to_stored
 #import bevy_comics::lines::edge::decode_ink
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::objects::style_of
 
 // Ink of the layer, see draw.wgsl.
 @group(0) @binding(4) var ink_texture: texture_2d<f32>;
-
-// A color of linear light as the picture stores it.
-fn to_stored(color: vec3<f32>) -> vec3<f32> {
-#ifdef STORED_SRGB
-    return srgb_encode(color);
-#else ifdef STORED_OKLAB
-    return linear_to_oklab(color);
-#else
-    return color;
-#endif
-}
 
 @fragment
 fn draw_highlights(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
