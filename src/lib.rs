@@ -88,6 +88,7 @@ mod samples;
 mod schedule;
 mod settings;
 pub mod style;
+mod tones;
 #[cfg(feature = "toon")]
 pub mod toon;
 
@@ -102,7 +103,7 @@ pub use effect::{Effect, EffectPlugin};
 pub use effects::{
     Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, DepthLayers, Desaturation,
     Focus, Halftone, Hatching, IsoLines, Misregistration, Outlines, Paint, Paper, Sketch,
-    SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
+    SpeedLines, ToneBands, ToneRamp, ToneRange, TwoTone, Vignette,
 };
 #[cfg(any(feature = "objects", feature = "toon"))]
 pub use motion_lines::MotionLines;

@@ -16,6 +16,7 @@ use crate::{
     lines,
     objects::ObjectsPlugin,
     style::StylePlugin,
+    tones,
 };
 
 /// Adds comics stylization: every [`Camera3d`] with an
@@ -81,7 +82,7 @@ fn build_engine_parts(app: &mut App) {
     app.insert_resource(parts);
 }
 
-/// The render world: what is asked of depth, objects and lines, and the pass
+/// The render world: what is asked of depth, objects, lines and tones, and the pass
 /// that draws with it.
 fn build_render(app: &mut App) {
     #[cfg(any(feature = "objects", feature = "toon"))]
@@ -91,6 +92,7 @@ fn build_render(app: &mut App) {
     DepthPlugin::build_render(app);
     ObjectsPlugin::build_render(app);
     lines::build_render(app);
+    tones::build_render(app);
     CompositePlugin::build_render(app);
     FusedPlugin::build_render(app);
     #[cfg(any(feature = "objects", feature = "toon"))]

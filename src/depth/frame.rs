@@ -80,6 +80,15 @@ pub(crate) struct DepthProjection {
 }
 
 impl DepthProjection {
+    /// Of numbers that are no depths: their levels are logarithms of themselves.
+    pub const NONE: Self = Self {
+        kind: ProjectionKind::Perspective,
+        scale: 0.0,
+        shift: 1.0,
+        near: 1.0,
+        far: 1.0,
+    };
+
     pub fn new(clip_from_view: &Mat4, projection: Option<&Projection>) -> Self {
         let kind = ProjectionKind::of(clip_from_view);
         let (near, far) = match projection {

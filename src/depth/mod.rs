@@ -9,7 +9,7 @@ pub(crate) mod passes;
 mod ping_pong;
 pub(crate) mod plugin;
 pub(crate) mod prepare;
-mod range;
+pub(crate) mod range;
 mod range_of;
 pub(crate) mod readback;
 mod reduce;

@@ -13,7 +13,7 @@ use bevy::{
 };
 
 use super::{
-    ProjectionKind,
+    ProjectionKind, ReductionMethod,
     ping_pong::PingPongPipeline,
     range::{RangeKey, RangePipeline, RangeShape},
     request::RangeRequest,
@@ -49,6 +49,16 @@ pub(crate) enum Reduction {
     },
 }
 
+/// The pipelines that find percentiles of the tones of one view.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct TonePasses {
+    pub shape: RangeShape,
+    pub key: RangeKey,
+    /// The reduction, which counts tones in place of depths.
+    pub count: CachedComputePipelineId,
+    pub smoothing: QueuedPass,
+}
+
 #[derive(SystemParam)]
 pub(crate) struct RangePipelines<'w> {
     ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
@@ -62,6 +72,28 @@ pub(crate) struct RangePipelines<'w> {
 }
 
 impl RangePipelines<'_> {
+    /// The pipelines for the tones of a picture that is stored in a space; `None` without compute
+    /// shaders.
+    pub fn of_tones(
+        &mut self,
+        cache: &PipelineCache,
+        space: CompositingSpace,
+    ) -> Option<TonePasses> {
+        let shape = RangeShape::choose(ReductionMethod::Auto, &self.adapter, &self.device)?;
+        let key = RangeKey {
+            histogram: true,
+            tones: Some(space),
+            ..RangeKey::default()
+        };
+        let pass = ViewPass::Smoothing { histogram: true };
+        Some(TonePasses {
+            shape,
+            key,
+            count: self.ranges.specialize(cache, &self.range, (shape, key)),
+            smoothing: (pass, self.passes.specialize(cache, &self.pass, pass)),
+        })
+    }
+
     /// The pipelines for a request; new ones are queued for compilation.
     pub fn get(&mut self, cache: &PipelineCache, request: &RangeRequest) -> RangePasses {
         let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
@@ -78,6 +110,7 @@ impl RangePipelines<'_> {
             oblique: kind == ProjectionKind::Oblique,
             histogram: counts,
             orthographic: counts && kind == ProjectionKind::Orthographic,
+            tones: None,
         };
         let mut reduction = || match shape {
             Some(shape) => Reduction::Compute {

@@ -237,7 +237,7 @@ impl ViewDepthRange {
     }
 }
 
-fn keys_buffer(device: &RenderDevice) -> Buffer {
+pub(crate) fn keys_buffer(device: &RenderDevice) -> Buffer {
     let copied = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
     let usage = BufferUsages::STORAGE | BufferUsages::UNIFORM | copied;
     buffer(device, "comics_depth_range", RANGE_SIZE, usage)

@@ -17,7 +17,7 @@ use wgpu_types::DeviceType;
 
 use super::{RawDepth, ReductionMethod};
 use crate::{
-    gpu::{UNFILTERABLE, definitions, sampled},
+    gpu::{UNFILTERABLE, definitions, sampled, stored},
     samples,
 };
 
@@ -112,7 +112,7 @@ impl RangePipeline {
             ),
         )
         .to_vec();
-        if key.samples <= 1 {
+        if key.samples <= 1 && key.tones.is_none() {
             entries.push(sampler(SamplerBindingType::NonFiltering).build(3, compute));
         }
         if key.histogram {
@@ -131,6 +131,8 @@ pub(crate) struct RangeKey {
     pub histogram: bool,
     /// The histogram has the bins of an orthographic projection.
     pub orthographic: bool,
+    /// The tones of a picture are reduced in place of depths. It is stored in this space.
+    pub tones: Option<CompositingSpace>,
 }
 
 impl SpecializedComputePipeline for RangePipeline {
@@ -148,7 +150,9 @@ impl SpecializedComputePipeline for RangePipeline {
             (key.oblique, "OBLIQUE"),
             (key.histogram, "HISTOGRAM"),
             (key.orthographic, "ORTHOGRAPHIC"),
+            (key.tones.is_some(), "TONES"),
         ]));
+        shader_defs.extend(key.tones.and_then(stored));
         ComputePipelineDescriptor {
             label: Some("comics_depth_range".into()),
             layout: vec![Self::layout(key)],

@@ -5,8 +5,13 @@
 // nothing is rounded or flushed to 0, and with integer atomics the result does not
 // depend on the order of the invocations. Both keys are maxima: of the bits (nearest)
 // and of 0 - bits (farthest). A buffer of zeros means "no geometry".
+//
+// TONES: the tones of a picture take the place of depths, see tones.wgsl.
 
 #import bevy_comics::depth::raw::{RangeView, raw_depth_key}
+#ifdef TONES
+#import bevy_comics::tones::tone_key
+#endif
 #ifdef HISTOGRAM
 #import bevy_comics::depth::histogram::{DepthWindow, depth_window, octave_bin, window_bin}
 #endif
@@ -24,7 +29,9 @@ struct RangeKeys {
 @group(0) @binding(1) var<uniform> view: RangeView;
 @group(0) @binding(2) var<storage, read_write> keys: RangeKeys;
 #ifndef MULTISAMPLED
+#ifndef TONES
 @group(0) @binding(3) var nearest_sampler: sampler;
+#endif
 #endif
 
 #ifdef HISTOGRAM
@@ -99,7 +106,10 @@ fn block_keys(at: vec2<u32>) -> vec2<u32> {
     let corner = view.rect.xy + at;
     let right = at.x + 1u < view.rect.z;
     let below = at.y + 1u < view.rect.w;
-#ifdef MULTISAMPLED
+#ifdef TONES
+    // One pixel of the four: as good for percentiles of a picture.
+    return key_pair(tone_key(textureLoad(depth_texture, vec2<i32>(corner), 0)));
+#else ifdef MULTISAMPLED
     var found = vec2(0u);
     let samples = #{SAMPLES};
     let last = view.rect.xy + view.rect.zw - 1u;

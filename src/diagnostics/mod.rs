@@ -42,6 +42,9 @@ pub enum ComicsStage {
     /// The passes that draw the outlines of highlighted objects
     /// ([`SelectionOutline`](crate::SelectionOutline), [`XRayOutline`](crate::XRayOutline)).
     HighlightedObjects,
+    /// The passes that find the range of the picture's tones
+    /// ([`ToneRange`](crate::ToneRange)).
+    Tones,
     /// An effect in the fused pass, by its name
     /// ([`Effect::NAME`](crate::Effect::NAME)); see also [`ComicsStage::of`].
     Effect(&'static str),
@@ -64,6 +67,7 @@ impl ComicsStage {
         Self::FindLines,
         Self::DrawLines,
         Self::HighlightedObjects,
+        Self::Tones,
     ];
 
     /// The stage's name in reports and files: lower case, with spaces.
@@ -81,6 +85,7 @@ impl ComicsStage {
             Self::FindLines => "find lines",
             Self::DrawLines => "draw lines",
             Self::HighlightedObjects => "highlighted objects",
+            Self::Tones => "tones",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
             Self::Stylize => "stylize",
         })
@@ -116,6 +121,8 @@ pub enum SkipReason {
     NoDepthStyle,
     /// The effects of the camera read depth, but not the depth map.
     NoMapStyle,
+    /// No effect of the camera divides tones or shades by them.
+    NoToneStyle,
     /// The lines of the camera do not need it, or it needs lines and no effect
     /// requests any.
     NoSuchLines,
@@ -163,6 +170,7 @@ impl fmt::Display for SkipReason {
             Self::Negligible => "it would change nothing",
             Self::NoDepthStyle => "no effect reads depth",
             Self::NoMapStyle => "no effect reads the depth map",
+            Self::NoToneStyle => "no effect divides tones",
             Self::NoSuchLines => "no such lines are requested",
             Self::NoSuchMeshes => "no transparent mesh in view asks for it",
             Self::FixedRange => "the range is fixed",

@@ -15,6 +15,7 @@ use super::{
 use crate::{
     lines::{LineModifiers, Outlines},
     settings::{crossfade, crossfade_weight},
+    tones::ToneRange,
 };
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
@@ -48,6 +49,8 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_without(&self, missing: Needs) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::lines`].
     fn any_lines(&self) -> Option<Outlines>;
+    /// As [`Effect::tones`].
+    fn any_tones(&self) -> Option<ToneRange>;
     /// As [`Effect::implied`].
     fn any_implied(&self) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::variants`].
@@ -126,6 +129,10 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_lines(&self) -> Option<Outlines> {
         self.lines()
+    }
+
+    fn any_tones(&self) -> Option<ToneRange> {
+        self.tones()
     }
 
     fn any_implied(&self) -> Option<Box<dyn AnyEffect>> {

@@ -43,6 +43,7 @@ use crate::{
     diagnostics::ComicsStage,
     lines::{LineModifiers, MapJumps, Outlines},
     settings::{clamp_fields, mix_fields, same_modes},
+    tones::ToneRange,
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -143,6 +144,15 @@ pub trait Effect:
     /// The lines that this effect requests; every number must be in its range. If several effects
     /// of a camera request lines, the request of the first one in the chain is used. Default: none.
     fn lines(&self) -> Option<Outlines> {
+        None
+    }
+
+    /// The range of tones that this effect requests; every number must be in its range. In WGSL,
+    /// `Pixel::toned` is then the unstyled picture in that range, and
+    /// `bevy_comics::tones::in_tone_range` brings other colors into it. If several effects of a camera
+    /// request one, that of the first one in the chain is used. The effect is left out while no
+    /// effect of the camera has [`Needs::TONES`], and without compute shaders. Default: none.
+    fn tones(&self) -> Option<ToneRange> {
         None
     }
 

@@ -16,7 +16,7 @@ pub(crate) const FILE_KEYS: [&str; 7] = [
 ];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 23] = [
+const MODULES: [&str; 24] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -40,6 +40,7 @@ const MODULES: [&str; 23] = [
     "bevy_comics::lines::read",
     "bevy_comics::lines::surface",
     "bevy_comics::objects",
+    "bevy_comics::tones",
 ];
 
 /// Why an effect cannot be registered beside the `known` ones; `None` if it can.

@@ -74,6 +74,10 @@ bitflags! {
         /// The true place of the world: `WORLD_ORIGIN` is defined in WGSL while the app has a
         /// [`WorldOrigin`](crate::cameras::WorldOrigin), see [`EffectContext`](super::EffectContext).
         const WORLD_ORIGIN = 1 << 15;
+        /// Tones that do not depend on the exposure: the effect divides the picture by its
+        /// lightness, or shades or prints by it. By itself this asks for nothing; it lets a
+        /// [`ToneRange`](crate::ToneRange) of the camera apply.
+        const TONES = 1 << 16;
     }
 }
 
@@ -84,5 +88,6 @@ impl Needs {
         .union(Self::BLUE_NOISE)
         .union(Self::BOX_STATISTICS)
         .union(Self::AUX_SCALAR)
-        .union(Self::WORLD_ORIGIN);
+        .union(Self::WORLD_ORIGIN)
+        .union(Self::TONES);
 }

@@ -7,6 +7,8 @@ struct Pixel {
     // multiplied by the opacity.
     color: vec3<f32>,
     original: vec3<f32>,
+    // The unstyled picture in the camera's `ToneRange`; without one the same as `original`.
+    toned: vec3<f32>,
     // The picture after the effects that change colors, before ink; like `color`. Set
     // from the stage Ink on.
     colored: vec3<f32>,
@@ -30,7 +32,7 @@ struct Pixel {
     // unless an effect sets them, and again in a later pass.
     splits: f32,
     spacing: f32,
-    // Change of the unstyled picture's lightness over this pixel (fwidth); 0 unless
-    // an effect of the camera needs it.
+    // Change of the lightness of `toned` over this pixel (fwidth); 0 unless an effect of
+    // the camera needs it.
     change: f32,
 }

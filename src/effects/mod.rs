@@ -46,6 +46,7 @@ mod sketch;
 mod speed_lines;
 mod tone_bands;
 mod tone_ramp;
+mod tone_range;
 mod two_tone;
 mod vignette;
 
@@ -74,6 +75,7 @@ macro_rules! effects {
 }
 
 effects! {
+    tone_range: ToneRange;
     abstraction: Abstraction;
     tone_ramp: ToneRamp;
     tone_bands: ToneBands;

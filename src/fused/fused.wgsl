@@ -15,7 +15,7 @@
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::view::{View, depth_frame, depth_pixel, inside_viewport, load_depth, pixel_depth, set_view}
 #import bevy_comics::effect::color::{
-    finite, finite_color, lightness, srgb_decode, srgb_encode, to_linear, to_stored,
+    finite, finite_color, lightness, luminance, srgb_decode, srgb_encode, to_linear, to_stored,
 }
 #import bevy_comics::effect::box_statistics::{half_side, mean_along, packed_means}
 #import bevy_comics::effect::aux_scalar::{load_aux_scalar, packed_number}
@@ -30,6 +30,7 @@
 #import bevy_comics::lines::layer_lines::{LineLayers, layer_ink}
 #import bevy_comics::lines::read::{line_owner, lines_at, set_line_ink, set_line_surface, set_lines}
 #import bevy_comics::objects::{load_object, unstyled_fraction}
+#import bevy_comics::tones::{ToneRange, in_tone_range, set_tone_range, tone_gain}
 
 // Holds only the settings of the effects that are drawn, in the order of the
 // chain. Structs inside a uniform start at multiples of 16 bytes: the vector before each of them, which is
@@ -45,6 +46,10 @@ struct Comics {
 #ifdef IN_LAYERS
     planes_of_lines_before: vec4<u32>,
     layers_of_lines: LineLayers,
+#endif
+#ifdef TONE_RANGE
+    tones_before: vec4<u32>,
+    tones: ToneRange,
 #endif
     //@members
 }
@@ -72,6 +77,11 @@ fn found(pixel: vec2<i32>, stored: vec4<f32>) -> Pixel {
     p.original = to_linear(stored.rgb);
     p.color = p.original;
     p.alpha = clamp(finite(stored.a), 0.0, 1.0);
+    p.toned = p.original;
+#ifdef TONE_RANGE
+    set_tone_range(comics.tones);
+    p.toned = in_tone_range(vec4(p.original, p.alpha));
+#endif
 #ifdef AUX_SCALAR
     let before = load_aux_scalar(pixel).color;
     p.color = before.rgb;
@@ -201,7 +211,12 @@ fn before_effects(pixel: vec2<i32>) -> Pixel {
     var p = found(pixel, load_source(inside_viewport(pixel)));
 #ifdef LIGHTNESS_CHANGE
     // Must run before any early return: derivatives need all four pixels of a quad.
+#ifdef TONE_RANGE
+    // What is lighter than white may be brought below it.
+    p.change = tone_gain() * fwidthFine(sqrt(max(luminance(p.original), 0.0)));
+#else
     p.change = fwidthFine(lightness(p.original));
+#endif
 #endif
     return p;
 }

@@ -30,6 +30,7 @@ use crate::{
     effect::{EffectRegistry, EffectTarget, EffectType, load_shaders},
     lines::draw_highlights,
     schedule::{ComicsSystems, PrepareComics},
+    tones::measure_tones,
 };
 
 /// Chooses the plan of every view, and draws its effects in one pass.
@@ -103,13 +104,21 @@ impl FusedPlugin {
             .add_systems(
                 Core3d,
                 (
-                    (stylize::<false>, draw_highlights::<false>)
+                    (
+                        measure_tones::<false>,
+                        stylize::<false>,
+                        draw_highlights::<false>,
+                    )
                         .chain()
                         .in_set(ComicsSystems::Stylize)
                         .after(tonemapping)
                         .before(fxaa)
                         .before(smaa),
-                    (stylize::<true>, draw_highlights::<true>)
+                    (
+                        measure_tones::<true>,
+                        stylize::<true>,
+                        draw_highlights::<true>,
+                    )
                         .chain()
                         .in_set(ComicsSystems::Print)
                         .after(ComicsSystems::Stylize)

@@ -108,6 +108,7 @@ mod surface_lines;
 mod threshold_map;
 mod together;
 mod tone_ramp;
+mod tone_range;
 mod toon;
 mod toon_light;
 mod toon_shaders;

@@ -14,7 +14,7 @@ use bevy_comics_testkit::reference::{
     fused::{Input, stylize},
     map::{Frame, Projection},
     resolve::{Prepass, Resolved},
-    sheet,
+    sheet, tone_range,
     view::View,
 };
 
@@ -185,6 +185,12 @@ pub fn assert_pass_matches_the_reference(
         [r, g, b, a]
     };
     let light_of = |x: u32, y: u32| light(loaded.pixels[(y * input.width + x) as usize]);
+    let tones = style.get::<ToneRange>().and_then(|s| {
+        let [left, top, width, height] = viewport;
+        let rows = (top..top + height).step_by(2);
+        let counted = rows.flat_map(|y| (left..left + width).step_by(2).map(move |x| (x, y)));
+        tone_range::percentiles(counted.map(|(x, y)| light_of(x, y)), s.outliers)
+    });
     let read_by_pass = Input {
         picture: &light_of,
         size: [input.width, input.height],
@@ -195,6 +201,7 @@ pub fn assert_pass_matches_the_reference(
         } else {
             [0, 0]
         },
+        tones,
     };
     for y in 0..input.height {
         for x in 0..input.width {
@@ -260,6 +267,7 @@ pub fn assert_later_pass_matches_the_reference<E: Effect>(
         lines: None,
         drawing: 0,
         quads: [left, top],
+        tones: None,
     };
     let sheet = Sheet::new([width, height].map(|v| v as usize), |[x, y]| {
         let [x, y] = [left + x as u32, top + y as u32];

@@ -105,10 +105,20 @@ pub fn reduce_and_count(
     (size, rect): ([u32; 2], [u32; 4]),
     window: [f32; 2],
 ) -> (Option<[u32; 2]>, Vec<u32>) {
+    let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_le_bytes()).collect();
+    let texture = gpu().texture_of(TextureFormat::R32Float, [size[0], size[1], 1], &bytes);
+    reduce_texture(shape, &texture, rect, window)
+}
+
+/// The same of a texture of depths, or with `TONES` of a picture.
+pub fn reduce_texture(
+    shape: &[&str],
+    texture: &wgpu::TextureView,
+    rect: [u32; 4],
+    window: [f32; 2],
+) -> (Option<[u32; 2]>, Vec<u32>) {
     let gpu = gpu();
     let Reduction { layout, pipeline } = reduction(shape);
-    let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_le_bytes()).collect();
-    let texture = gpu.texture_of(TextureFormat::R32Float, [size[0], size[1], 1], &bytes);
     let mut view = [0u8; 80];
     view[..16].copy_from_slice(&rect.map(u32::to_le_bytes).concat());
     let uniform = gpu.buffer(&view, wgpu::BufferUsages::UNIFORM);
@@ -119,7 +129,7 @@ pub fn reduce_and_count(
     let histogram = gpu.buffer(&counts_before, usage);
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
-        wgpu::BindingResource::TextureView(&texture),
+        wgpu::BindingResource::TextureView(texture),
         uniform.as_entire_binding(),
         keys.as_entire_binding(),
         wgpu::BindingResource::Sampler(&sampler),

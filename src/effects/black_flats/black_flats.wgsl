@@ -51,7 +51,7 @@ fn fill(s: BlackFlats, picture: vec4<f32>, coverage: f32) -> vec3<f32> {
 
 fn black_flats(s: BlackFlats, p: Pixel) -> Pixel {
     var out = p;
-    var flats = dark_area(s, p.original, p.depth.y);
+    var flats = dark_area(s, p.toned, p.depth.y);
 #ifdef EFFECT_BLACK_FLATS_STEEP
     flats = max(flats, steep_area(s, map_slope(depth_frame(), vec2<i32>(p.position))));
 #endif

@@ -86,11 +86,10 @@ impl Effect for BlackFlats {
     }
 
     fn needs(&self) -> Needs {
-        if self.depends_on_depth() {
-            Needs::MAP
-        } else {
-            Needs::empty()
-        }
+        let mut needs = Needs::empty();
+        needs.set(Needs::MAP, self.depends_on_depth());
+        needs.set(Needs::TONES, self.value.unwrap_or(0.0) > 0.0);
+        needs
     }
 
     fn without(self, missing: Needs) -> Option<Self> {

@@ -130,7 +130,7 @@ impl Effect for DepthLayers {
             self.granularity == Granularity::Object,
         );
         needs.set(Needs::DEPTH_BORDERS, self.borders == LayerBorders::Auto);
-        needs.set(Needs::LIGHTNESS_CHANGE, self.has_bands());
+        needs.set(Needs::LIGHTNESS_CHANGE | Needs::TONES, self.has_bands());
         needs
     }
 

@@ -213,7 +213,7 @@ impl Effect for Halftone {
     fades_by!(opacity);
 
     fn needs(&self) -> Needs {
-        let mut needs = Needs::empty();
+        let mut needs = Needs::TONES;
         needs.set(Needs::MAP, self.at_near != self.at_far);
         needs.set(Needs::PICTURE, self.reads_cells());
         needs.set(Needs::BLUE_NOISE, self.shape == ScreenShape::Stochastic);

@@ -209,6 +209,7 @@ impl Effect for Hatching {
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();
         needs.set(Needs::MAP, self.at_near != self.at_far);
+        needs.set(Needs::TONES, !self.faces());
         if self.anchor == HatchingAnchor::Object {
             needs |= Needs::DEPTH | Needs::NORMALS | Needs::OBJECT_ANCHORS | Needs::WORLD_ORIGIN;
         }
@@ -238,7 +239,7 @@ impl Effect for Hatching {
         variants.flag("DOTS", self.kind == HatchingKind::Dots);
         variants.flag("ON_THINGS", on_things);
         variants.flag("SIMPLIFY_SMALL", on_things && self.simplify_small > 0.0);
-        variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
+        variants.flag("FACES", self.faces());
     }
 
     fn map_faded(self, fraction: f32) -> Self {
@@ -266,6 +267,11 @@ impl Effect for Hatching {
 }
 
 impl Hatching {
+    /// Whether the direction of surfaces decides how dark it is, not the picture.
+    fn faces(&self) -> bool {
+        self.anchor == HatchingAnchor::Object && self.source == HatchingSource::Facing
+    }
+
     /// The strokes of a drawing. `scale`: physical pixels per unit of length.
     pub(crate) fn strokes(&self, scale: f32, seed: u32) -> Strokes {
         let [x, y, z] = self.axes();

@@ -64,7 +64,7 @@ impl Effect for ToneBands {
     fades_by!(amount);
 
     fn needs(&self) -> Needs {
-        Needs::LIGHTNESS_CHANGE
+        Needs::LIGHTNESS_CHANGE | Needs::TONES
     }
 
     fn variants(&self, _: &EffectContext, variants: &mut Variants) {

@@ -113,7 +113,7 @@ impl Effect for ToneRamp {
     fades_by!(amount);
 
     fn needs(&self) -> Needs {
-        let mut needs = Needs::LIGHTNESS_CHANGE;
+        let mut needs = Needs::LIGHTNESS_CHANGE | Needs::TONES;
         needs.set(Needs::MAP, self != &self.without_distance());
         needs
     }

@@ -76,7 +76,7 @@ impl Effect for TwoTone {
     fades_by!(amount);
 
     fn needs(&self) -> Needs {
-        Needs::LIGHTNESS_CHANGE
+        Needs::LIGHTNESS_CHANGE | Needs::TONES
     }
 
     fn uniform(&self, view: &EffectContext) -> TwoToneUniform {

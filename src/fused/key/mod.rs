@@ -33,6 +33,7 @@ use crate::{
     lines::{Outlines, ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_depths_entry, object_styles_entry},
     samples,
+    tones::tones_entry,
 };
 
 /// The properties of a view that select a pipeline, besides its plan.
@@ -69,6 +70,8 @@ pub(crate) struct StylizeKey {
     edge_styles: bool,
     /// Lines have other colors in near, middle and far.
     pub layer_ink: bool,
+    /// Tones are brought into a range.
+    pub tones: bool,
     pub object_styles: bool,
     /// Some objects are left alone: by the color effects of the pass, by its prints.
     unstyled_colors: bool,
@@ -132,6 +135,7 @@ impl StylizeKey {
                     .line_modifiers(context)
                     .layers
                     .is_some_and(|p| p.has_colors()),
+            tones: plan.tones().is_some(),
             object_styles: (lines && plan.objects.any)
                 || plan.objects.unstyled
                 || needs.contains(Needs::OBJECT_ANCHORS),
@@ -173,6 +177,7 @@ impl StylizeKey {
             && self.view.is_none()
             && !self.composite
             && !self.continued
+            && !self.tones
             && self.reads == Read::Picture
             && !self.reads_owners();
         let local =
@@ -341,6 +346,7 @@ impl StylizeKey {
             ),
             (self.layer_ink, "IN_LAYERS"),
             (self.layer_ink && self.area != DrawnArea::Base, "LAYER_INK"),
+            (self.tones, "TONE_RANGE"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
             (needs(Needs::OBJECT_DEPTHS), "OBJECT_DEPTHS"),
@@ -401,6 +407,7 @@ impl StylizeKey {
             (self.continued, between.build(10, fragment)),
             (needs(Needs::BLUE_NOISE), packed.build(11, fragment)),
             (self.reads_drawn_depth(), prepass(DRAWN_DEPTH_BINDING)),
+            (self.tones, tones_entry()),
         ];
         entries.extend(
             optional

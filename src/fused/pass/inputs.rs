@@ -27,6 +27,7 @@ use crate::{
     gpu::entry,
     lines::ViewLines,
     objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+    tones::{TONES_BINDING, prepare::ViewTones},
 };
 
 /// Reads between the centers of pixels.
@@ -53,6 +54,7 @@ pub(crate) type ViewInputs<'a> = (
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
     (Option<&'a ViewObjectIds>, Option<&'a ObjectDepths>),
+    Option<&'a ViewTones>,
 );
 
 /// What all passes of a view bind.
@@ -88,7 +90,7 @@ impl Inputs<'_> {
 /// them is missing in this frame.
 pub(crate) fn entries<'a>(
     key: &StylizeKey,
-    ((surfaces, drawn), range, lines, (ids, depths)): ViewInputs<'a>,
+    ((surfaces, drawn), range, lines, (ids, depths), tones): ViewInputs<'a>,
     object_styles: &'a ObjectStyleBuffer,
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
@@ -139,6 +141,10 @@ pub(crate) fn entries<'a>(
             return Err(SkipReason::SampleCountMismatch);
         }
         entries.push(entry(DRAWN_DEPTH_BINDING, depth.view().into_binding()));
+    }
+    if key.tones {
+        let keys = tones.and_then(ViewTones::drawn).ok_or(not_ready)?;
+        entries.push(entry(TONES_BINDING, keys.as_entire_binding()));
     }
     if needs(Needs::BLUE_NOISE) {
         let tile = blue_noise.view().ok_or(not_ready)?;

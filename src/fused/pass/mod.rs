@@ -110,7 +110,7 @@ pub(super) fn stylize<const PRINTS: bool>(
     if request.plan.runs_after_anti_aliasing() != PRINTS {
         return;
     }
-    let (_, _, lines, _) = found;
+    let (_, _, lines, ..) = found;
     let cache = &*binder.cache;
     let earlier = EarlierPasses::new(cache, request, textures);
     let (Some(draws), Some(earlier)) = (Draws::new(cache, request, lines), earlier) else {

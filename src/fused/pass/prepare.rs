@@ -93,6 +93,9 @@ impl FusedRequest {
         if let Some(layers) = self.line_layers.filter(|_| self.key.layer_ink) {
             push(encode(&layers));
         }
+        if let Some(tones) = self.plan.tones().filter(|_| self.key.tones) {
+            push(encode(&tones.packed()));
+        }
         for effect in self.plan.drawn() {
             if effect.effect_type().shader.settings.is_some() {
                 push(effect.uniform_bytes(&self.context));

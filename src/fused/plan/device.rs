@@ -41,7 +41,7 @@ impl DeviceLacks {
         if self.compute_shaders {
             warn_once!(
                 "this device has no compute shaders: visible ranges are not smoothed, locked, \
-                 trimmed or taken from other cameras (`RangeOf`), the focus of the middle is not smoothed, borders of depth layers are not found, and lines are drawn without \
+                 trimmed or taken from other cameras (`RangeOf`), the focus of the middle is not smoothed, borders of depth layers are not found, tones are not brought into a range (`ToneRange`), and lines are drawn without \
                  hysteresis, closed gaps, ink budget, held frames, weights, styles of convex and concave edges, and fog"
             );
         }

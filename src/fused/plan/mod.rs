@@ -20,6 +20,7 @@ use crate::{
     lines::{CreaseSource, Creases, LineFog, Outlines, Silhouettes, has_fog},
     objects::ObjectChanges,
     page::PageHeight,
+    tones::ToneRange,
 };
 
 /// An effect in a camera's plan.
@@ -235,6 +236,8 @@ impl Plan {
         for planned in &mut self.effects {
             planned.replaced = replaced.contains(&planned.effect.name());
         }
+        let left_as_found = self.leaves_tones();
+        self.leave_out(|effect| left_as_found.filter(|_| effect.any_tones().is_some()));
         self.objects.any &= self.lines.is_some();
         self.sections = has_sections && self.has_section_borders();
         self.objects.widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
@@ -283,6 +286,30 @@ impl Plan {
         }
     }
 
+    /// Why no tones are brought into a range; `None` if they can be.
+    fn leaves_tones(&self) -> Option<SkipReason> {
+        if self.lacks.compute_shaders {
+            return Some(SkipReason::NoComputeShaders);
+        }
+        self.divides_tones()
+            .next()
+            .is_none()
+            .then_some(SkipReason::NoToneStyle)
+    }
+
+    /// The drawn effects that divide tones or shade by them.
+    fn divides_tones(&self) -> impl Iterator<Item = &dyn AnyEffect> {
+        self.drawn()
+            .filter(|effect| effect.any_needs().contains(Needs::TONES))
+    }
+
+    /// The range that tones are brought into. It fades with the effects that divide them.
+    pub fn tones(&self) -> Option<ToneRange> {
+        let range = self.drawn().find_map(AnyEffect::any_tones)?;
+        let strengths = self.divides_tones().map(AnyEffect::any_strength);
+        Some(range.for_strength(strengths.fold(0.0, f32::max)))
+    }
+
     /// Removes the effects for which there is a reason, and records it.
     fn leave_out(&mut self, reason: impl Fn(&dyn AnyEffect) -> Option<SkipReason>) {
         let left_out = &mut self.left_out;
@@ -328,6 +355,7 @@ impl Plan {
         for (need, _) in available.into_iter().filter(|(_, is_there)| !is_there) {
             needs.remove(need);
         }
+        needs.remove(Needs::TONES);
         if self.objects.unstyled || needs.intersects(Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS) {
             needs |= Needs::IDS;
         }

@@ -35,7 +35,8 @@ impl Plan {
         match stage {
             ComicsStage::Effect(_)
             | ComicsStage::RangeReadback
-            | ComicsStage::HighlightedObjects => SkipReason::NotRequested,
+            | ComicsStage::HighlightedObjects
+            | ComicsStage::Tones => SkipReason::NotRequested,
             ComicsStage::DepthPrepass => SkipReason::NoDepthStyle,
             ComicsStage::TransparentDepth if self.lacks.depth_copies => SkipReason::NoDepthCopies,
             ComicsStage::ObjectIds | ComicsStage::TransparentDepth if self.lacks.object_ids => {
@@ -68,6 +69,47 @@ impl Plan {
             }
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing => SkipReason::NoDepthStyle,
             ComicsStage::Stylize => SkipReason::NothingToDraw,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::world::World;
+
+    use super::*;
+    use crate::{
+        BlackFlats, ToneRange, effect::EffectRegistry, fused::DeviceLacks, objects::ObjectChanges,
+    };
+
+    /// Tones are brought into a range where an effect divides them and compute shaders find it, and
+    /// as far as that effect is seen.
+    #[test]
+    fn a_range_of_tones_is_left_out_where_nothing_divides_or_finds_it() {
+        let types = EffectRegistry::built_in().types();
+        for (value, compute_shaders, opacity, expected) in [
+            (Some(0.2), false, 1.0, Ok(1.0)),
+            (Some(0.2), false, 0.125, Ok(0.5)),
+            (Some(0.2), true, 1.0, Err(SkipReason::NoComputeShaders)),
+            (None, false, 1.0, Err(SkipReason::NoToneStyle)),
+        ] {
+            let flats = BlackFlats {
+                slope: Some(0.1),
+                value,
+                opacity,
+                ..BlackFlats::default()
+            };
+            let mut world = World::new();
+            let camera = world.spawn((ToneRange::default(), flats)).id();
+            let lacks = DeviceLacks {
+                compute_shaders,
+                ..DeviceLacks::default()
+            };
+            let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
+            let plan = plan.expect("effects").on_device(lacks);
+            assert_eq!(plan.tones().map(|range| range.amount), expected.ok());
+            let stage = (ComicsStage::of::<ToneRange>(), expected.err());
+            assert!(plan.effect_stages(&types).contains(&stage), "{stage:?}");
         }
     }
 }

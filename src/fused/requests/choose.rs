@@ -20,11 +20,16 @@ use super::{
     scene::{Scene, SceneTextures},
 };
 use crate::{
-    depth::{passes::RangePasses, prepare::ViewDepthRange, request::RangeRequest},
+    depth::{
+        passes::{RangePasses, TonePasses},
+        prepare::ViewDepthRange,
+        request::RangeRequest,
+    },
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     fused::{Plan, ViewPlan, pass::prepare::FusedRequest},
     lines::{LinePasses, LineRequest, ViewHighlights},
     objects::{DepthWanted, IdRequest, IdsWanted},
+    tones::TonesRequest,
 };
 
 /// On a view that a plan was chosen for: the last plan whose pipelines were all
@@ -38,6 +43,7 @@ type Chosen = (
     (LineRequest, LinePasses),
     (IdRequest, IdsWanted, DepthWanted),
     (FusedRequest, ReadyPlan),
+    (TonesRequest, TonePasses),
 );
 
 /// A view that no longer has a plan or an extracted camera.

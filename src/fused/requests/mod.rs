@@ -40,13 +40,14 @@ use super::{
 use crate::{
     depth::{
         ProjectionKind, RawDepth,
-        passes::{RangePasses, RangePipelines, Reduction},
+        passes::{RangePasses, RangePipelines, Reduction, TonePasses},
         request::RangeRequest,
         view::ViewUniform,
     },
     effect::{AffectedArea, AnyEffect, EffectContext, Needs},
     lines::{LineLayers, LinePasses, LinePipelines, LineRequest},
     objects::{IdRequest, ObjectDepthRequest, ObjectEye},
+    tones::TonesRequest,
 };
 
 /// The requests of one plan to the services, for one view, and their pipelines.
@@ -55,6 +56,7 @@ pub(super) struct Requests {
     lines: Option<(LineRequest, LinePasses)>,
     ids: Option<IdRequest>,
     object_depths: Option<ObjectDepthRequest>,
+    tones: Option<(TonesRequest, TonePasses)>,
     #[cfg(feature = "objects")]
     highlights: Option<HighlightRequests>,
     fused: Option<FusedRequest>,
@@ -102,6 +104,10 @@ impl Services<'_> {
             let passes = self.ranges.get(cache, &request);
             (request, passes)
         });
+        let tones = tones_request(view, plan, scene, camera).and_then(|request| {
+            let passes = self.ranges.of_tones(cache, request.space)?;
+            Some((request, passes))
+        });
         let ids = scene
             .depth
             .filter(|_| plan.draws() && plan.draws_ids() || scene.ids_queued)
@@ -122,6 +128,7 @@ impl Services<'_> {
             lines,
             ids,
             object_depths,
+            tones,
             #[cfg(feature = "objects")]
             highlights,
             fused,
@@ -307,6 +314,24 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
     })
 }
 
+fn tones_request(
+    view: &ViewPlan,
+    plan: &Plan,
+    scene: &Scene,
+    camera: &ExtractedCamera,
+) -> Option<TonesRequest> {
+    let range = plan.tones()?;
+    Some(TonesRequest {
+        camera: view.camera,
+        range,
+        space: camera.compositing_space.unwrap_or(CompositingSpace::Linear),
+        viewport: scene.viewport,
+        after_anti_aliasing: plan.runs_after_anti_aliasing(),
+        seconds: view.seconds,
+        cuts: view.cuts,
+    })
+}
+
 /// Puts components on a view, or removes them.
 pub(crate) fn set_or_remove<B: Bundle>(view: &mut EntityCommands, wanted: Option<B>) {
     match wanted {
@@ -334,6 +359,8 @@ impl Requests {
             ];
             reduction || later.into_iter().flatten().any(|(_, id)| compute(id))
         });
+        let tones = (self.tones.as_ref())
+            .is_some_and(|(_, passes)| compute(passes.count) || compute(passes.smoothing.1));
         let lines = self.lines.as_ref();
         let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
         #[cfg(feature = "objects")]
@@ -341,7 +368,7 @@ impl Requests {
             || (self.highlights.as_ref())
                 .is_some_and(|m| are_compiling(m.passes(), cache) || render(m.pipeline()));
         let fused = (self.fused.as_ref()).is_some_and(|f| f.pipelines().any(render));
-        range || lines || fused
+        range || tones || lines || fused
     }
 
     /// Puts the requests on the view, and removes those of the last frame.
@@ -352,6 +379,7 @@ impl Requests {
         set_or_remove(&mut view, self.lines);
         set_or_remove(&mut view, self.ids);
         set_or_remove(&mut view, self.object_depths);
+        set_or_remove(&mut view, self.tones);
         set_or_remove(&mut view, self.fused);
         #[cfg(feature = "objects")]
         match self.highlights {

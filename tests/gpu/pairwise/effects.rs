@@ -13,7 +13,9 @@ pub const LINES: &str = "lines";
 /// Each effect is in one group and in the last one, which has all.
 pub const GROUPS: [Group; 9] = [
     ("colors", colors),
-    ("tones", || of(&["tone_ramp", "tone_bands", "black_flats"])),
+    ("tones", || {
+        of(&["tone_range", "tone_ramp", "tone_bands", "black_flats"])
+    }),
     (LINES, || of(&["outlines", "contours"])),
     ("sketch", || of(&["sketch", "iso_lines"])),
     ("dots", || of(&["halftone", "misregistration"])),

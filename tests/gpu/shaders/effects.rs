@@ -139,7 +139,11 @@ fn needs(effect: &dyn AnyEffect, missing: Needs) -> Definitions {
         needs.remove(Needs::AUX_SCALAR);
     }
     let needed = NEEDS.iter().filter(|(need, _)| needs.contains(*need));
-    needed.flat_map(|(_, names)| flags(names)).collect()
+    let tones = effect.any_tones().map(|_| ("TONE_RANGE", None));
+    needed
+        .flat_map(|(_, names)| flags(names))
+        .chain(tones)
+        .collect()
 }
 
 /// Perspective and parallel views at several scales, on a smooth and on a rough sheet.

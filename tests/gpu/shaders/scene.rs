@@ -24,10 +24,16 @@ fn depths() -> Vec<Variant> {
     let view = ["MULTISAMPLED", "OBLIQUE", "HISTOGRAM", "ORTHOGRAPHIC"];
     let range = |shape: &[&'static str]| with_subsets("depth/range.wgsl", shape, &view);
     let first = ["FIRST", "MULTISAMPLED", "OBLIQUE"];
+    let tones = [
+        "TONES HISTOGRAM",
+        "TONES HISTOGRAM BARRIER_FREE STORED_SRGB",
+        "TONES HISTOGRAM SUBGROUP STORED_OKLAB",
+    ];
     [
         range(&[]),
         range(&["BARRIER_FREE"]),
         range(&["SUBGROUP"]),
+        each("depth/range.wgsl", &tones),
         with_subsets("depth/smoothing.wgsl", &[], &["HISTOGRAM"]),
         with_subsets("depth/borders.wgsl", &[], &[]),
         with_subsets("depth/middle.wgsl", &[], &["MULTISAMPLED", "OBLIQUE"]),

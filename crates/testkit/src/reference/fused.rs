@@ -9,13 +9,13 @@ use super::{
     draw::Ink,
     halftone, mix, paper, read,
     sheet::Sheet,
-    sketch, tone_bands, tone_ramp,
+    sketch, tone_bands, tone_ramp, tone_range,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers, Desaturation,
-    Halftone, Outlines, Paper, Sketch, ToneBands, ToneRamp, Vignette,
+    Halftone, Outlines, Paper, Sketch, ToneBands, ToneRamp, ToneRange, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -30,6 +30,8 @@ pub struct Input<'a> {
     /// The pixel at which quads of 2 x 2 pixels begin: the corner of the viewport if the first
     /// pass draws a texture of the viewport's size.
     pub quads: [u32; 2],
+    /// The percentiles of the picture's tones, if a [`ToneRange`] reads them.
+    pub tones: Option<[f64; 2]>,
 }
 
 impl Input<'_> {
@@ -46,8 +48,8 @@ impl Input<'_> {
     /// Change of the lightness over a pixel: the sum of the differences to its two
     /// neighbors in the same quad of 2 x 2 pixels, as `fwidthFine`. Outside of the viewport, its
     /// border counts.
-    fn change(&self, viewport: [u32; 4], x: u32, y: u32) -> f64 {
-        let at = |x, y| color::lightness(self.light(x, y));
+    fn change(&self, viewport: [u32; 4], x: u32, y: u32, lightness: fn(Rgb) -> f64) -> f64 {
+        let at = |x, y| lightness(self.light(x, y));
         let [left, top, width, height] = viewport;
         let beside = |v: u32, quads: u32, first: u32, size: u32| {
             let other = (v.wrapping_sub(quads) ^ 1).wrapping_add(quads);
@@ -64,6 +66,19 @@ impl Input<'_> {
     }
 }
 
+/// The unstyled picture in its range of tones.
+fn toned(style: &ComicStyle, input: &Input, [x, y]: [u32; 2]) -> Rgb {
+    let light = input.light(x, y);
+    let Some(s) = style.get::<ToneRange>() else {
+        return light;
+    };
+    let alpha = input.opacity(x, y);
+    let line = tone_range::line(s, input.tones);
+    let brought = tone_range::brought(line, light.map(|c| c / alpha.max(1e-3)));
+    let amount = f64::from(s.amount) * (1e3 * alpha).min(1.0);
+    std::array::from_fn(|i| mix(light[i], brought[i] * alpha, amount))
+}
+
 /// A pixel after the effects that change colors, with its depth map and its complement.
 struct Colored {
     picture: Rgba,
@@ -78,14 +93,24 @@ fn colored(
     nudge: f64,
 ) -> Colored {
     let alpha = input.opacity(x, y);
-    let mut linear = input.light(x, y);
+    let mut linear = toned(style, input, [x, y]);
+    // What is lighter than white can be brought below it.
+    let unlimited: fn(Rgb) -> f64 = |c| color::luminance(c).max(0.0).sqrt();
+    let (lightness, gain) =
+        style
+            .get::<ToneRange>()
+            .map_or((color::lightness as fn(Rgb) -> f64, 1.0), |s| {
+                let [gain, _] = tone_range::line(s, input.tones);
+                (unlimited, mix(1.0, gain, f64::from(s.amount)))
+            });
     let mut depth = pixel_depth(view, x, y);
     if view.flip {
         depth.reverse();
     }
     let [d, l] = depth;
     let opacity = alpha.max(1e-3);
-    let change = (input.change(view.viewport, x, y) + nudge).max(0.0);
+    let change = gain * input.change(view.viewport, x, y, lightness);
+    let change = (change + nudge).max(0.0);
     if let Some(s) = style.get::<ToneRamp>() {
         let seen = linear.map(|c| (c / opacity).max(0.0) * (1.0 + nudge));
         let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
@@ -176,7 +201,7 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
 /// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
 /// far rounding at a threshold can move the color.
 pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgba {
-    let source = input.light(x, y);
+    let source = toned(style, input, [x, y]);
     let printed = print(style, view, input, [x, y], nudge);
     let (mut linear, mut alpha) = parts(printed.picture);
     let [_, l] = printed.depth;

@@ -59,6 +59,7 @@ pub mod stylized_highlight;
 pub mod surface;
 pub mod tone_bands;
 pub mod tone_ramp;
+pub mod tone_range;
 pub mod toon;
 pub mod view;
 pub mod vignette;
