@@ -156,6 +156,7 @@ mod pages {
         ColorHarmony: "docs/color-harmony.md";
         Abstraction: "docs/abstraction.md";
         Hatching: "docs/hatching.md";
+        ToneRange: "docs/tone-range.md";
         FixedRange: "docs/fixed-range.md";
         Cameras: "docs/cameras.md";
         BigWorlds: "docs/big-worlds.md";
