@@ -114,7 +114,7 @@ fn every_shape_counts_the_tones_of_any_picture() {
 #[test]
 fn any_tone_is_brought_into_the_range() {
     let mut random = Random::new(9);
-    let sizes = [0.0, 1e-8, 1e-4, 0.01, 0.1, 0.3, 0.5, 1.0, 3.0, 256.0];
+    let sizes: [f32; 10] = [0.0, 1e-8, 1e-4, 0.01, 0.1, 0.3, 0.5, 1.0, 3.0, 256.0];
     let rows: Vec<[f32; 8]> = (0..4000)
         .map(|_| {
             let ends = [random.pick(&sizes), random.pick(&sizes)];

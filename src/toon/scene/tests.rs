@@ -227,7 +227,7 @@ fn of_two_cameras_the_one_with_the_lower_order_lights_a_mesh() {
     let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
     let mesh = app.world_mut().spawn(standard).id();
     let [first, second] = [(1, 0.1), (2, 0.2)].map(|(at, light)| styled(&mut app, at, light));
-    let set = |app: &mut App, camera, settings: Camera| {
+    let set = |app: &mut App, camera: Entity, settings: Camera| {
         app.world_mut().entity_mut(camera).insert(settings);
         app.update();
         highlight(app, mesh)
@@ -348,7 +348,7 @@ fn sections_and_anchors_come_and_go_with_a_style() {
     let camera = (Camera::default(), CameraScene(scene.clone()));
     let camera = app.world_mut().spawn(camera).id();
     app.update();
-    let found = |app: &App, root| {
+    let found = |app: &App, root: Entity| {
         let root = app.world().entity(root);
         let angle = root.get::<MeshSections>().map(|sections| sections.angle);
         (angle, root.get::<PatternAnchor>().copied())
