@@ -174,15 +174,16 @@ struct Place {
 // The place that `rank` depths come before, in the order of the bins from `first` to
 // `last`.
 fn place_of(first: u32, last: u32, rank: f32) -> Place {
+    var bin = first;
+    var count = f32(histogram.bins[bin]);
     var passed = 0.0;
-    for (var bin = first; ; bin = select(bin - 1u, bin + 1u, last > first)) {
-        let count = f32(histogram.bins[bin]);
-        if passed + count > rank || bin == last {
-            return Place(bin, clamp((rank - passed) / max(count, 1.0), 0.0, 1.0));
-        }
+    // Not an endless loop with a return inside: from that, llvmpipe returned a wrong part.
+    while bin != last && passed + count <= rank {
         passed += count;
+        bin = select(bin - 1u, bin + 1u, last > first);
+        count = f32(histogram.bins[bin]);
     }
-    return Place(last, 1.0);
+    return Place(bin, clamp((rank - passed) / max(count, 1.0), 0.0, 1.0));
 }
 
 // Bits of the depths (near, far) that the outliers are beyond, interpolated within
