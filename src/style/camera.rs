@@ -35,9 +35,8 @@ pub struct StyleCamera {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum StyleDither {
-    /// Off while the style has an effect that [divides
-    /// tones](crate::effect::Effect::DIVIDES_TONES), which would show dither as dots; otherwise as
-    /// the camera has it.
+    /// Off while the style has an effect that divides tones (`Effect::DIVIDES_TONES`), which would
+    /// show dither as dots; otherwise as the camera has it.
     #[default]
     Auto,
     /// On.

@@ -44,7 +44,7 @@ pub struct StyleScene {
     pub parts: Vec<StylePart>,
     /// Gives the meshes [`MeshSections`](crate::objects::MeshSections) of this angle in degrees: on
     /// the entity at the top of each hierarchy with such a mesh, or on each of the
-    /// [roots](StyleScope::Roots), if it has none of its own. Range 10 to 180. `None` leaves it to
+    /// roots of its `StyleScope`, if it has none of its own. Range 10 to 180. `None` leaves it to
     /// the camera's [`CreaseSource`](crate::lines::CreaseSource). Needs the feature `objects`.
     /// Default: `None`.
     #[reflect(@FieldRange::linear(10.0, 180.0).unit("°"), @NotFinite(50.0))]

@@ -59,12 +59,17 @@ impl Gpu {
             })
     }
 
+    /// A shader without checks at run time, as the engine makes them: with checks, a driver may
+    /// compile loops that it would otherwise get wrong.
+    #[expect(unsafe_code, reason = "shaders without checks are trusted")]
     pub fn shader(&self, module: wgpu::naga::Module) -> wgpu::ShaderModule {
-        self.device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: None,
-                source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
-            })
+        let module = wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
+        };
+        let checks = wgpu::ShaderRuntimeChecks::unchecked();
+        // SAFETY: the shaders are those of this crate and of its tests.
+        unsafe { self.device.create_shader_module_trusted(module, checks) }
     }
 
     pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -99,7 +99,8 @@ fn a_file_keeps_what_the_panel_does_not_edit() {
     let saved = style_of(&path, &text_of(&path).expect("text"), &files.registry);
     let saved = saved.expect("a style");
     assert_eq!(saved.camera, file.camera);
-    assert_eq!(saved.effects, inked(8.0).effects);
+    let contours = saved.get::<Contours>().expect("contours");
+    assert_eq!(contours.width, 8.0);
     fs::remove_dir_all(&folder).expect("removed");
 }
 
