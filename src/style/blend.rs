@@ -23,10 +23,10 @@ impl ComicStyle {
     /// * Settings that cannot be interpolated switch at `t = 0.5`: the strokes of a sketch and
     ///   their rate, `despike`, `locked`.
     /// * What a style does besides is no part of this: settings of the camera switch at `t = 1`, and
-    ///   so does what of a scene is no number of a light.
+    ///   so do parts of a scene other than numbers and colors of lights.
     ///
-    /// Both count as complete styles. For a partial one, lay it
-    /// [`over`](Self::over) the camera's own style first.
+    /// Both styles count as complete. Lay a partial one [`over`](Self::over) the camera's own style
+    /// first.
     #[must_use]
     pub fn blend(&self, other: &Self, t: f32) -> Self {
         if t.is_nan() || t <= 0.0 {
