@@ -2,10 +2,15 @@
 
 use bevy::{
     asset::{AssetLoader, LoadContext, io::Reader},
+    ecs::entity::EntityHashSet,
     prelude::*,
 };
 
-use super::{ComicStyle, ComicStyleError, StyleTransition, StyleVolume, layer::set_grade, presets};
+use super::{
+    ComicStyle, ComicStyleError, StyleTransition, StyleVolume,
+    layer::{set_grade, set_surroundings},
+    presets,
+};
 use crate::effect::EffectRegistry;
 
 /// Gives a camera the style of a [`ComicStyle`] asset.
@@ -19,7 +24,7 @@ use crate::effect::EffectRegistry;
 /// ```
 ///
 /// The style is [applied](ComicStyle::apply) to the camera when the asset has loaded, and again
-/// whenever it changes; so are its [`camera`](ComicStyle::camera) and its
+/// whenever it changes. This includes its [`camera`](ComicStyle::camera) and
 /// [`scene`](ComicStyle::scene). Between those moments the camera's components may be edited. If a
 /// file becomes unreadable, the camera keeps its last style. Removing this component restores the
 /// camera's own style, its other settings, and the materials of the scene.
@@ -40,10 +45,10 @@ pub struct Comic(pub Handle<ComicStyle>);
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ComicGrade(pub Handle<ComicStyle>);
 
-/// The styles that are new or have changed.
+/// The styles that have changed or were removed. Cameras wait for new ones.
 fn changed(events: &mut MessageReader<AssetEvent<ComicStyle>>) -> Vec<AssetId<ComicStyle>> {
     let ids = events.read().filter_map(|event| match event {
-        AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+        AssetEvent::Modified { id } | AssetEvent::Removed { id } => Some(*id),
         _ => None,
     });
     ids.collect()
@@ -55,18 +60,28 @@ pub(super) fn apply_grades(
     mut removed: RemovedComponents<ComicGrade>,
     mut events: MessageReader<AssetEvent<ComicStyle>>,
     styles: Res<Assets<ComicStyle>>,
+    mut waiting: Local<EntityHashSet>,
 ) {
-    for entity in removed.read().filter(|entity| !cameras.contains(*entity)) {
-        if let Ok(mut camera) = commands.get_entity(entity) {
+    for entity in removed.read() {
+        waiting.remove(&entity);
+        if !cameras.contains(entity)
+            && let Ok(mut camera) = commands.get_entity(entity)
+        {
             camera.queue(|mut camera: EntityWorldMut| set_grade(&mut camera, None));
         }
     }
     let changed = changed(&mut events);
     for (entity, grade) in &cameras {
-        if (grade.is_changed() || changed.contains(&grade.0.id()))
-            && let Some(style) = styles.get(&grade.0).cloned()
-            && let Ok(mut camera) = commands.get_entity(entity)
-        {
+        let is_new = grade.is_changed() || waiting.contains(&entity);
+        if !is_new && !changed.contains(&grade.0.id()) {
+            continue;
+        }
+        let Some(style) = styles.get(&grade.0).cloned() else {
+            waiting.insert(entity);
+            continue;
+        };
+        waiting.remove(&entity);
+        if let Ok(mut camera) = commands.get_entity(entity) {
             camera.queue(move |mut camera: EntityWorldMut| set_grade(&mut camera, Some(style)));
         }
     }
@@ -79,8 +94,10 @@ pub(super) fn apply_styles(
     existing: Query<(), With<Comic>>,
     mut events: MessageReader<AssetEvent<ComicStyle>>,
     styles: Res<Assets<ComicStyle>>,
+    mut waiting: Local<EntityHashSet>,
 ) {
     for entity in removed.read() {
+        waiting.remove(&entity);
         if !existing.contains(entity)
             && let Ok(mut camera) = commands.get_entity(entity)
         {
@@ -89,13 +106,21 @@ pub(super) fn apply_styles(
     }
     let changed = changed(&mut events);
     for (entity, handle) in &cameras {
-        if !handle.is_changed() && !changed.contains(&handle.0.id()) {
+        let is_new = handle.is_changed() || waiting.contains(&entity);
+        if !is_new && !changed.contains(&handle.0.id()) {
             continue;
         }
-        if let Some(style) = styles.get(&handle.0)
-            && let Ok(mut camera) = commands.get_entity(entity)
-        {
+        let Ok(mut camera) = commands.get_entity(entity) else {
+            continue;
+        };
+        if let Some(style) = styles.get(&handle.0) {
+            waiting.remove(&entity);
             style.apply(&mut camera);
+        } else {
+            waiting.insert(entity);
+            if handle.is_added() {
+                camera.queue(|mut camera: EntityWorldMut| set_surroundings(&mut camera));
+            }
         }
     }
 }
@@ -105,7 +130,7 @@ pub(super) fn add_presets(
     comics: Query<&Comic, Changed<Comic>>,
     grades: Query<&ComicGrade, Changed<ComicGrade>>,
     volumes: Query<&StyleVolume, Changed<StyleVolume>>,
-    transitions: Query<&StyleTransition, Added<StyleTransition>>,
+    transitions: Query<&StyleTransition, Changed<StyleTransition>>,
     mut styles: ResMut<Assets<ComicStyle>>,
 ) {
     let comics = comics.iter().map(|comic| &comic.0);

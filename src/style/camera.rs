@@ -267,6 +267,35 @@ mod tests {
     }
 
     #[test]
+    fn an_empty_comic_comes_before_or_after_the_style() {
+        let settings = StyleCamera {
+            msaa: Some(Msaa::Off),
+            ..StyleCamera::default()
+        };
+        let style = ComicStyle {
+            camera: settings,
+            ..ComicStyle::new()
+        };
+        let (mut app, camera, _) = styled(ComicStyle::new());
+        for is_before in [true, false] {
+            app.world_mut().entity_mut(camera).remove::<Comic>();
+            app.update();
+            assert_eq!(app.world().get(camera), Some(&Msaa::Sample4));
+            for is_comic in [is_before, !is_before] {
+                if is_comic {
+                    let mut camera = app.world_mut().entity_mut(camera);
+                    camera.insert(Comic::default());
+                } else {
+                    style.apply(&mut app.world_mut().commands().entity(camera));
+                    app.world_mut().flush();
+                }
+                app.update();
+            }
+            assert_eq!(app.world().get(camera), Some(&Msaa::Off), "{is_before}");
+        }
+    }
+
+    #[test]
     fn a_grade_lies_over_whatever_style_a_camera_has() {
         let (mut app, camera, _) = styled(ComicStyle::new().with(Outlines::default()));
         let mut styles = app.world_mut().resource_mut::<Assets<ComicStyle>>();
@@ -344,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_needs_no_asset_server() {
+    fn a_preset_is_there_in_its_first_frame() {
         let (mut app, camera, _) = styled(ComicStyle::new());
         let mut entity = app.world_mut().entity_mut(camera);
         entity.insert(presets::LIGNE_CLAIRE.comic());

@@ -301,6 +301,14 @@ pub(super) fn lay_over(
     });
 }
 
+/// Gives a camera with a new [`Comic`] what the style that was applied before has besides effects.
+pub(super) fn set_surroundings(camera: &mut EntityWorldMut) {
+    if let Some(layer) = camera.get::<StyleLayer>() {
+        let written = layer.written.clone();
+        set_camera(camera, &written);
+    }
+}
+
 /// The camera's style without the style that was applied to it.
 pub(super) fn own_style(camera: &EntityWorldMut) -> ComicStyle {
     let Some(registry) = camera.world().get_resource::<EffectRegistry>() else {

@@ -222,6 +222,18 @@ fn a_transition_to_a_partial_style_keeps_the_cameras_own() {
     assert_eq!(end.depth_map, Some(fixed()));
 }
 
+#[test]
+fn a_transition_to_a_preset_takes_the_place_of_another() {
+    let (mut app, camera) = app();
+    let targets = [(presets::LIGNE_CLAIRE, 1.0), (presets::NOIR, 0.0)];
+    for (preset, seconds) in targets {
+        let transition = StyleTransition::to_asset(preset.handle(), seconds);
+        app.world_mut().entity_mut(camera).insert(transition);
+        app.update();
+    }
+    assert_eq!(look(&app, camera).effects, presets::NOIR.style().effects);
+}
+
 /// The width of a style's outlines, and how many effects it has.
 fn lines_and_effects(look: &ComicStyle) -> (Option<f32>, usize) {
     let width = look.get::<Outlines>().map(|lines| lines.width);
