@@ -72,7 +72,6 @@ impl StyleCamera {
 
 /// On a camera: the settings that a style has replaced.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
-#[component(clone_behavior = Ignore)]
 struct Replaced {
     dither: Option<Setting<DebandDither>>,
     msaa: Option<Setting<Msaa>>,
@@ -264,6 +263,18 @@ mod tests {
         app.update();
         let own = (DebandDither::Enabled, Msaa::Sample2, Tonemapping::Reinhard);
         assert_eq!(settings(&app, camera), own);
+    }
+
+    #[test]
+    fn a_clone_of_a_camera_gives_back_the_settings_of_the_camera() {
+        let (mut app, camera, _) = styled(ComicStyle::new().with(ToneBands::default()));
+        assert_eq!(settings(&app, camera).0, DebandDither::Disabled);
+        let clone = app.world_mut().entity_mut(camera).clone_and_spawn();
+        app.update();
+        app.world_mut().entity_mut(clone).remove::<Comic>();
+        app.update();
+        let own = (DebandDither::Enabled, Msaa::Sample4, Tonemapping::Reinhard);
+        assert_eq!(settings(&app, clone), own);
     }
 
     #[test]
