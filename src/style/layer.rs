@@ -90,6 +90,13 @@ impl StyleLayer {
         }
         self.own
     }
+
+    /// `base`, with what differs between what was written and `look`.
+    fn edited_base(&self, look: &ComicStyle) -> ComicStyle {
+        let mut base = self.base.clone();
+        base.take_edits(&self.written, look);
+        base
+    }
 }
 
 impl ComicStyle {
@@ -182,23 +189,26 @@ impl ComicStyle {
 
     pub(super) fn take_off(camera: &mut EntityWorldMut) {
         let own = own_style(camera);
-        if camera.take::<StyleLayer>().is_some() {
-            own.write(camera);
-            set_camera(camera, &Self::new());
-            if camera.contains::<Grade>() {
-                Self::new().partial().lay_over(camera);
-            }
+        if camera.contains::<StyleLayer>() {
+            own.replace_all(camera);
         }
     }
 
-    /// Makes this style the camera's own, as a complete one, with no style over it.
+    /// Makes this style the camera's own, as a complete one, with no style over it except that of
+    /// its [`ComicGrade`](super::ComicGrade).
     pub fn set_as_own(&self, camera: &mut EntityCommands) {
         let style = self.clone();
-        camera.queue(move |mut camera: EntityWorldMut| {
-            camera.remove::<StyleLayer>();
-            style.write(&mut camera);
-            set_camera(&mut camera, &Self::new());
-        });
+        camera.queue(move |mut camera: EntityWorldMut| style.replace_all(&mut camera));
+    }
+
+    /// Makes this style the camera's own, in place of the applied one, with the grade over it.
+    fn replace_all(&self, camera: &mut EntityWorldMut) {
+        camera.remove::<StyleLayer>();
+        self.write(camera);
+        set_camera(camera, &Self::new());
+        if camera.contains::<Grade>() {
+            Self::new().partial().lay_over(camera);
+        }
     }
 
     /// Makes a camera look like this complete style, which was made by editing
@@ -214,11 +224,13 @@ impl ComicStyle {
                 (Some(layer), Some(mut place)) => {
                     let edited = place.below.as_mut().unwrap_or(&mut own);
                     edited.take_edits(&layer.written, &style);
-                    lay_over(&mut camera, own, [layer.base, layer.style], style);
+                    let base = place.below.clone().unwrap_or(layer.base);
+                    lay_over(&mut camera, own, [base, layer.style], style);
                     camera.insert(place);
                 }
-                (Some(_), None) => {
-                    lay_over(&mut camera, own, [style.clone(), style.clone()], style);
+                (Some(layer), None) => {
+                    let base = layer.edited_base(&style);
+                    lay_over(&mut camera, own, [base, style.clone()], style);
                 }
                 (None, _) => style.write(&mut camera),
             }
@@ -329,15 +341,15 @@ fn known_types(camera: &EntityWorldMut) -> Vec<&'static EffectType> {
         .unwrap_or_default()
 }
 
-/// The style that was applied to the camera, with what the game has edited since, else without the
-/// camera's grade.
+/// The style that was applied to the camera, without the camera's grade, but with what the game has
+/// edited since.
 pub(super) fn applied_style(camera: &EntityWorldMut) -> Option<ComicStyle> {
     let layer = camera.get::<StyleLayer>()?;
     let registry = camera.world().get_resource::<EffectRegistry>()?;
     let current = ComicStyle::of(EntityRef::from(camera), registry);
     let is_edited = current.effects != layer.written.effects;
     Some(if is_edited {
-        current
+        layer.edited_base(&current)
     } else {
         layer.base.clone()
     })

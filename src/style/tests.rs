@@ -1,5 +1,7 @@
 //! Styles over a camera's own look.
 
+mod grades;
+
 use std::any::TypeId;
 
 use bevy::{
