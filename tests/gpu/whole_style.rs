@@ -52,6 +52,8 @@ fn a_comic_draws_what_its_parts_draw_and_leaves_nothing_behind() {
     for object in objects(&mut small) {
         small.world().entity_mut(object).remove::<ToonScene>();
     }
+    let without = small.shot(&style);
+    assert!(changed(&without, &by_hand, 0) > 0.01, "the scene shows");
     let camera = small.camera;
     let world = small.world();
     ComicStyle::remove_from(&mut world.commands().entity(camera));
