@@ -14,6 +14,9 @@ use crate::settings::{FieldRange, clamp_or_default};
 /// with a larger [scale factor](bevy::camera::ImageRenderTarget::scale_factor) has the lengths of the
 /// window, enlarged. Cells of screens are at least 2.5 physical pixels wide.
 ///
+/// Toon materials tell views apart by viewport, place, axis and projection. Of views that are equal
+/// in all of these, in two windows for example, they use the page of one for all.
+///
 /// [`ComicStyle::page`](crate::ComicStyle::page) sets this component.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
