@@ -206,24 +206,26 @@ impl SceneRoots<'_, '_> {
         if let Some((root, scene)) = nearest {
             return Some(((root, 0), LitBy::Scene(scene)));
         }
-        let mut lighting = self.lighting(mesh).map(|styled| styled.camera);
-        let camera = lighting.next()?;
+        let mut lighting = self.lighting(mesh).map(|(_, styled)| styled);
+        let first = lighting.next()?;
+        let camera = first.camera;
         let scene = self.scene_of(camera)?;
-        if let Some(other) = lighting.find(|other| self.scene_of(*other) != Some(scene)) {
+        let mut others = lighting.map(|styled| styled.camera);
+        if let Some(other) = others.find(|other| self.scene_of(*other) != Some(scene)) {
             warn_once!(
                 "the styles of {camera} and {other} light the same meshes: that of {camera} applies, \
-                 whose order is lower"
+                 which comes first by `Camera::order`, then by entity"
             );
         }
-        let light = 1 + scene.part_of(name);
+        let light = 1 + first.part_of(name);
         Some(((camera, light), LitBy::Camera(scene)))
     }
 
-    /// The cameras whose styles include a mesh. The first one decides.
-    fn lighting(&self, mesh: Entity) -> impl Iterator<Item = &StyledCamera> {
+    /// The cameras whose styles include a mesh, and their indices. The first one decides.
+    fn lighting(&self, mesh: Entity) -> impl Iterator<Item = (usize, &StyledCamera)> {
         let layers = self.layers.get(mesh).ok().unwrap_or_default();
-        let styled = self.styled.0.iter();
-        styled.filter(move |styled| styled.lights(layers, self.way_up(mesh)))
+        let styled = self.styled.0.iter().enumerate();
+        styled.filter(move |(_, styled)| styled.lights(layers, self.way_up(mesh)))
     }
 
     /// An entity and those above it. Parents in a circle, which the engine does not prevent, end.

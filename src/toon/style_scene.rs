@@ -26,8 +26,8 @@ use crate::settings::{FieldRange, NotFinite, clamp_fields, clamp_or_default, mix
 /// 5. [`light`](Self::light).
 ///
 /// All cameras draw the same materials. Where cameras have different scenes for one mesh, that of
-/// the active camera with the lowest [`Camera::order`] applies, and a warning is logged. The other
-/// cameras keep their effects.
+/// the active camera that comes first applies, by [`Camera::order`], then by entity, and a warning
+/// is logged. The other cameras keep their effects.
 ///
 /// A style changes no lights. If its shadows need a light with shadow maps and there is none, a
 /// warning is logged.
@@ -38,8 +38,8 @@ pub struct StyleScene {
     /// Lighting of the materials that no part names. Files have it without a `ramp_map`. Default:
     /// [`ToonLight::default`].
     pub light: ToonLight,
-    /// Exceptions by the names of materials, of which the first one that fits applies. At most 32;
-    /// a file with more is refused. Default: none.
+    /// Exceptions by the names of materials, of which the first one that fits applies. At most 32:
+    /// further ones have no effect, and a file with more is refused. Default: none.
     #[serde(deserialize_with = "few")]
     pub parts: Vec<StylePart>,
     /// Gives the meshes [`MeshSections`](crate::objects::MeshSections) of this angle in degrees: on
@@ -72,6 +72,7 @@ pub struct StylePart {
 /// On a camera with a [`Comic`](crate::Comic): which meshes its style changes.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum StyleScope {
     /// Those on the [`RenderLayers`](bevy::camera::visibility::RenderLayers) of the camera.
     #[default]
@@ -152,18 +153,19 @@ impl StyleScene {
         self.sections.map(clamped)
     }
 
-    /// The names of the parts.
+    /// The names of the parts that are used.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.parts.iter().map(|part| part.names.as_str())
+        let used = self.parts.iter().take(Self::MOST_PARTS);
+        used.map(|part| part.names.as_str())
     }
 
-    /// The part of a material, from 1; 0 if it has none.
-    pub(super) fn part_of(&self, name: Option<&MaterialName>) -> usize {
-        let Some(name) = name.filter(|_| !self.parts.is_empty()) else {
+    /// The part of a material, from 1; 0 if it has none. `patterns`: names of parts in lower case.
+    pub(super) fn part_of(patterns: &[String], name: Option<&MaterialName>) -> usize {
+        let Some(name) = name.filter(|_| !patterns.is_empty()) else {
             return 0;
         };
         let name = name.0.to_lowercase();
-        let part = self.parts.iter().position(|part| part.is_named(&name));
+        let part = patterns.iter().position(|names| is_named(names, &name));
         part.map_or(0, |part| part + 1)
     }
 
@@ -176,17 +178,15 @@ impl StyleScene {
 
     /// Whether shadows of other surfaces are to be drawn.
     pub(super) fn draws_cast_shadows(&self) -> bool {
-        self.light.cast_shadows && self.light.shadow_strength > 0.0
+        let mut lights = (0..=self.names().count()).map(|part| self.light_of(part));
+        lights.any(|light| light.cast_shadows && light.shadow_strength > 0.0)
     }
 }
 
-impl StylePart {
-    /// Whether a name, in lower case, is among those of the part.
-    fn is_named(&self, name: &str) -> bool {
-        let names = self.names.to_lowercase();
-        let mut names = names.split('|').map(str::trim);
-        names.any(|pattern| !pattern.is_empty() && fits(pattern, name))
-    }
+/// Whether a name is among those of a part. Both are in lower case.
+fn is_named(names: &str, name: &str) -> bool {
+    let mut patterns = names.split('|').map(str::trim);
+    patterns.any(|pattern| !pattern.is_empty() && fits(pattern, name))
 }
 
 /// Whether a name fits a pattern, in which `*` is any text.
@@ -241,9 +241,10 @@ mod tests {
     #[test]
     fn parts_are_found_by_the_names_of_materials() {
         let eyes = |names: &str| {
-            StyleScene::default()
+            let scene = StyleScene::default()
                 .with_part("hair", ToonLight::default())
-                .with_part(names, ToonLight::default())
+                .with_part(names, ToonLight::default());
+            scene.names().map(str::to_lowercase).collect::<Vec<_>>()
         };
         for (names, name, part) in [
             ("*eye*", "Left Eye", 2),
@@ -258,10 +259,20 @@ mod tests {
             ("", "eye", 0),
             ("", "", 0),
         ] {
-            let found = eyes(names).part_of(Some(&name.into()));
+            let found = StyleScene::part_of(&eyes(names), Some(&name.into()));
             assert_eq!(found, part, "{name} in {names}");
         }
-        assert_eq!(eyes("*").part_of(None), 0, "a mesh without a name");
+        let unnamed = StyleScene::part_of(&eyes("*"), None);
+        assert_eq!(unnamed, 0, "a mesh without a name");
+    }
+
+    #[test]
+    fn parts_beyond_the_largest_number_have_no_effect() {
+        let scene = StyleScene {
+            parts: vec![StylePart::default(); StyleScene::MOST_PARTS + 1],
+            ..StyleScene::default()
+        };
+        assert_eq!(scene.names().count(), StyleScene::MOST_PARTS);
     }
 
     #[test]

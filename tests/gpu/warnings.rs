@@ -135,7 +135,7 @@ fn light_twice(small: &mut Small) {
         style.apply(&mut camera);
     }
     world.flush();
-    small.headless.step(34);
+    small.wait(5.5);
     small.world().despawn(sun);
 }
 

@@ -3,7 +3,7 @@
 use bevy::{camera::visibility::RenderLayers, ecs::system::SystemParam, prelude::*};
 
 use super::{Original, RootKey, ToonScene};
-use crate::toon::{StyleScene, StyleScope};
+use crate::toon::{MaterialName, StyleScene, StyleScope};
 
 /// On a camera with a [`Comic`](crate::Comic): what its style does to meshes.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub(super) struct StyledCamera {
     scope: StyleScope,
     /// Those of the parts of its scene.
     names: Vec<String>,
+    /// The same in lower case, as names of materials are compared with them.
+    patterns: Vec<String>,
     /// What it adds to meshes: sections of this angle, and an anchor of patterns.
     pub adds: (Option<f32>, bool),
 }
@@ -37,6 +39,7 @@ impl StyledCamera {
             layers: layers.unwrap_or_default().clone(),
             scope: scope.cloned().unwrap_or_default(),
             names: scene.0.names().map(str::to_owned).collect(),
+            patterns: scene.0.names().map(str::to_lowercase).collect(),
             adds: (scene.0.angle(), scene.0.screens),
         }
     }
@@ -69,9 +72,9 @@ impl StyledCamera {
         }
     }
 
-    #[cfg(feature = "objects")]
-    pub fn has_root(&self, entity: Entity) -> bool {
-        matches!(&self.scope, StyleScope::Roots(roots) if roots.contains(&entity))
+    /// The part of its scene that lights a material, from 1; 0 if none does.
+    pub fn part_of(&self, name: Option<&MaterialName>) -> usize {
+        StyleScene::part_of(&self.patterns, name)
     }
 }
 
@@ -140,7 +143,7 @@ impl CameraScenes<'_, '_> {
             if let Ok((_, scene, ..)) = self.cameras.get(*camera)
                 && (all || scene.is_changed())
             {
-                lights.extend((0..=scene.0.parts.len()).map(|part| {
+                lights.extend((0..=scene.0.names().count()).map(|part| {
                     let light = scene.0.light_of(part).clone();
                     ((*camera, 1 + part), ToonScene::new(light))
                 }));
@@ -157,8 +160,11 @@ impl CameraScenes<'_, '_> {
     }
 }
 
-/// Frames with lights and lit meshes, but without shadows, until the scene counts as loaded.
-const LOADED: u32 = 30;
+/// Seconds with lights and lit meshes, but without shadows, until the scene counts as loaded.
+const LOADED: f32 = 5.0;
+
+/// The most seconds that a frame counts: loading makes long frames.
+const LONGEST_FRAME: f32 = 0.25;
 
 /// Warns of a style with shadows in a scene where no light casts any: a style changes no lights.
 pub(in crate::toon) fn warn_of_missing_shadows(
@@ -167,9 +173,10 @@ pub(in crate::toon) fn warn_of_missing_shadows(
     suns: Query<&DirectionalLight>,
     lamps: Query<&PointLight>,
     spots: Query<&SpotLight>,
-    mut frames: Local<u32>,
+    time: Option<Res<Time<Real>>>,
+    mut seconds: Local<f32>,
 ) {
-    if *frames > LOADED {
+    if *seconds > LOADED {
         return;
     }
     let mut wanting = (cameras.iter()).filter(|(_, scene)| scene.0.draws_cast_shadows());
@@ -181,10 +188,10 @@ pub(in crate::toon) fn warn_of_missing_shadows(
         || spots.iter().any(|light| light.shadow_maps_enabled)
     {
         // There is nothing to say any more.
-        *frames = LOADED + 1;
+        *seconds = f32::INFINITY;
     } else if !suns.is_empty() || !lamps.is_empty() || !spots.is_empty() {
-        *frames += 1;
-        if *frames > LOADED {
+        *seconds += time.map_or(0.0, |time| time.delta_secs().min(LONGEST_FRAME));
+        if *seconds > LOADED {
             warn!(
                 "the style of {camera} draws shadows, but no light has `shadow_maps_enabled`: a \
                  style changes no lights"

@@ -325,6 +325,80 @@ fn meshes_follow_what_is_above_them() {
 
 #[cfg(feature = "objects")]
 #[test]
+fn the_first_camera_that_lights_any_mesh_of_a_hierarchy_gives_it_sections() {
+    use crate::objects::MeshSections;
+
+    let mut app = app();
+    let after_search = add_components.after(find_meshes).before(follow_materials);
+    app.add_systems(Update, after_search);
+    let standard = MeshMaterial3d(add(&mut app, StandardMaterial::default()));
+    let [first, second] = [(0, 45.0), (1, 60.0)].map(|(layer, angle)| {
+        let order = layer as isize;
+        let scene = StyleScene {
+            sections: Some(angle),
+            ..StyleScene::default()
+        };
+        let camera = Camera { order, ..default() };
+        let layers = RenderLayers::layer(layer);
+        let camera = (camera, layers, CameraScene(scene));
+        app.world_mut().spawn(camera).id()
+    });
+    // A mesh and its two children.
+    let unseen = 5;
+    let mut hierarchy = |layers: [usize; 3]| {
+        let [root, one, two] = layers.map(|layer| {
+            let mesh = (standard.clone(), RenderLayers::layer(layer));
+            app.world_mut().spawn(mesh).id()
+        });
+        app.world_mut().entity_mut(root).add_children(&[one, two]);
+        [root, one, two]
+    };
+    let figures = [
+        hierarchy([unseen, 0, 1]),
+        hierarchy([unseen, 1, 0]),
+        hierarchy([1, 1, unseen]),
+        hierarchy([unseen, unseen, unseen]),
+    ];
+    let angles = |app: &mut App| {
+        app.update();
+        figures.map(|[root, ..]| {
+            let sections = app.world().get::<MeshSections>(root);
+            sections.map(|sections| sections.angle)
+        })
+    };
+    let [low, high] = [45.0, 60.0].map(Some);
+    assert_eq!(angles(&mut app), [low, low, high, None]);
+    let put = |app: &mut App, mesh: Entity, layer: usize| {
+        let layers = RenderLayers::layer(layer);
+        app.world_mut().entity_mut(mesh).insert(layers);
+    };
+
+    // Single meshes are on other layers.
+    put(&mut app, figures[0][0], unseen + 1);
+    put(&mut app, figures[1][2], unseen);
+    put(&mut app, figures[2][0], unseen);
+    put(&mut app, figures[3][1], 1);
+    assert_eq!(angles(&mut app), [low, high, high, high]);
+    put(&mut app, figures[0][2], unseen);
+    put(&mut app, figures[2][1], unseen);
+    put(&mut app, figures[3][2], 0);
+    assert_eq!(angles(&mut app), [low, high, None, low]);
+
+    // The other camera comes first.
+    let camera = Camera {
+        order: -1,
+        ..default()
+    };
+    app.world_mut().entity_mut(second).insert(camera);
+    assert_eq!(angles(&mut app), [low, high, None, high]);
+    app.world_mut().despawn(second);
+    assert_eq!(angles(&mut app), [low, None, None, low]);
+    app.world_mut().despawn(first);
+    assert_eq!(angles(&mut app), [None; 4]);
+}
+
+#[cfg(feature = "objects")]
+#[test]
 fn sections_and_anchors_come_and_go_with_a_style() {
     use crate::objects::{MeshSections, PatternAnchor};
 
