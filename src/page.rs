@@ -17,7 +17,8 @@ use crate::settings::{FieldRange, clamp_or_default};
 /// Toon materials tell views apart by viewport, place, axis and projection. Of views that are equal
 /// in all of these, in two windows for example, they use the page of one for all.
 ///
-/// [`ComicStyle::page`](crate::ComicStyle::page) sets this component.
+/// [`ComicStyle::page`](crate::ComicStyle::page) sets this component, and a complete style without
+/// a page removes it, until the style is taken off.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct PageHeight(

@@ -39,8 +39,9 @@ pub struct Comic(pub Handle<ComicStyle>);
 /// for example, over any style.
 ///
 /// It stays while the style below it changes, also by a [`StyleTransition`]. Styles of
-/// [`StyleVolume`]s lie over it. A complete style counts as a partial one. Removing this component
-/// restores the style below.
+/// [`StyleVolume`]s lie over it. A complete style counts as a partial one. Its `camera` and `scene`
+/// need a [`Comic`] on the camera, which may be empty. Removing this component restores the style
+/// below.
 #[derive(Component, FromTemplate, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ComicGrade(pub Handle<ComicStyle>);

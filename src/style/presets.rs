@@ -53,8 +53,8 @@ impl Preset {
         self.source
     }
 
-    /// The whole style, for a camera: its effects, its settings of the camera, and its light on the
-    /// materials of the scene.
+    /// The whole style, for a camera: its effects, its settings of the camera, and, if it
+    /// has one, its light on the materials of the scene.
     pub fn comic(self) -> Comic {
         Comic(self.handle())
     }

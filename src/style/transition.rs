@@ -76,7 +76,8 @@ pub struct StyleTransitionFinished {
 impl StyleTransition {
     /// To a style, in so many seconds; 0, or what is not a positive number, is
     /// at once. The camera's [`Comic`], if it has one, is emptied, so
-    /// later changes of that file have no effect.
+    /// later changes of that file have no effect. Without one, the `camera` and the `scene` of the
+    /// style have none either.
     pub fn to(style: ComicStyle, seconds: f32) -> Self {
         Self::new(StyleTarget::Style(style), seconds)
     }

@@ -27,7 +27,7 @@ use crate::{
 ///
 /// A quarter of the pixels of the viewport are counted on the GPU. Both ends of the range are
 /// smoothed over time as the visible range is: the state is one per camera, and starts anew after
-/// a [`CameraCut`] and when the size of the view changes. Black and transparent pixels do not
+/// a [`CameraCut`] and when the size of the view changes. Black pixels and those of opacity below 0.5 do not
 /// count. Without compute shaders, it is left out.
 ///
 /// [`ToneBands`]: crate::ToneBands
@@ -45,8 +45,8 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToneRange {
-    /// Fraction of the picture that is darker than the one end of its range, and lighter than the
-    /// other. Range 0 to 0.2, default 0.05: percentiles 5 and 95.
+    /// Fraction of the pixels that are darker than the dark end of the picture's range, and fraction
+    /// of those that are lighter than the light end. Range 0 to 0.2, default 0.05: percentiles 5 and 95.
     #[reflect(@FieldRange::linear(0.0, 0.2))]
     pub outliers: f32,
     /// Lightness that the dark end becomes. Range 0 to 0.4, default 0.1.

@@ -26,11 +26,11 @@ use crate::settings::{FieldRange, NotFinite, clamp_fields, clamp_or_default, mix
 /// 5. [`light`](Self::light).
 ///
 /// All cameras draw the same materials. Where cameras have different scenes for one mesh, that of
-/// the active camera that comes first applies, by [`Camera::order`], then by entity, and a warning
-/// is logged. The other cameras keep their effects.
+/// the active camera that comes first applies, by [`Camera::order`], then by entity; the first
+/// time, a warning is logged. The other cameras keep their effects.
 ///
-/// A style changes no lights. If its shadows need a light with shadow maps and there is none, a
-/// warning is logged.
+/// A style changes no lights. If its shadows need a light with shadow maps and there are only
+/// lights without, a warning is logged.
 #[derive(Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
