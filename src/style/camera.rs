@@ -102,6 +102,13 @@ pub(super) fn set_camera(camera: &mut EntityWorldMut, style: &ComicStyle) {
     set_scene(camera, style.scene.as_ref());
 }
 
+/// Whether a style has replaced settings of a camera.
+pub(super) fn has_set_camera(camera: &EntityWorldMut) -> bool {
+    camera
+        .get::<Replaced>()
+        .is_some_and(|replaced| *replaced != Replaced::default())
+}
+
 #[cfg(feature = "toon")]
 fn set_scene(camera: &mut EntityWorldMut, scene: Option<&StyleScene>) {
     match scene {

@@ -2,7 +2,10 @@
 
 use bevy::prelude::*;
 
-use super::{Comic, ComicStyle, camera::set_camera};
+use super::{
+    Comic, ComicStyle,
+    camera::{has_set_camera, set_camera},
+};
 use crate::{
     depth::DepthMap,
     effect::{EffectRegistry, EffectType},
@@ -314,8 +317,11 @@ pub(super) fn lay_over(
 }
 
 /// Gives a camera with a new [`Comic`] what the style that was applied before has besides effects.
+/// If that was applied with it, what the game has set since stays.
 pub(super) fn set_surroundings(camera: &mut EntityWorldMut) {
-    if let Some(layer) = camera.get::<StyleLayer>() {
+    if let Some(layer) = camera.get::<StyleLayer>()
+        && !has_set_camera(camera)
+    {
         let written = layer.written.clone();
         set_camera(camera, &written);
     }
