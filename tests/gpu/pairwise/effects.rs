@@ -11,11 +11,10 @@ pub type Group = (&'static str, fn() -> ComicStyle);
 pub const LINES: &str = "lines";
 
 /// Each effect is in one group and in the last one, which has all.
-pub const GROUPS: [Group; 9] = [
+pub const GROUPS: [Group; 10] = [
     ("colors", colors),
-    ("tones", || {
-        of(&["tone_range", "tone_ramp", "tone_bands", "black_flats"])
-    }),
+    ("range of tones", range_of_tones),
+    ("tones", || of(&["tone_ramp", "tone_bands", "black_flats"])),
     (LINES, || of(&["outlines", "contours"])),
     ("sketch", || of(&["sketch", "iso_lines"])),
     ("dots", || of(&["halftone", "misregistration"])),
@@ -52,6 +51,15 @@ fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
         style.insert_any(own.unwrap_or_else(effect.default));
     }
     style
+}
+
+/// With flats that no tone is dark enough for: a small difference of the range, as samples and
+/// resolution make it, moves all tones a little, and would move whole areas into another band.
+fn range_of_tones() -> ComicStyle {
+    of(&["tone_range"]).with(BlackFlats {
+        value: Some(1e-3),
+        ..default()
+    })
 }
 
 fn colors() -> ComicStyle {
