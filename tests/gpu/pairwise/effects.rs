@@ -40,6 +40,10 @@ fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
             rate: 0.0,
             ..default()
         })
+        .with(ToneRange {
+            outliers: 0.0,
+            ..default()
+        })
         .with(Paper {
             anchor: PaperAnchor::View,
             ..default()
@@ -55,6 +59,7 @@ fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
 
 /// With flats that no tone is dark enough for: a small difference of the range, as samples and
 /// resolution make it, moves all tones a little, and would move whole areas into another band.
+/// Nor are there percentiles, which jump where an area has nearly that fraction of the picture.
 fn range_of_tones() -> ComicStyle {
     of(&["tone_range"]).with(BlackFlats {
         value: Some(1e-3),
