@@ -31,6 +31,7 @@ pub trait Exchange: Send + Sync {
 }
 
 /// A step: what was there before it.
+#[expect(clippy::large_enum_variant, reason = "most steps are styles")]
 pub enum Step {
     /// The style of a camera.
     Style(Entity, ComicStyle),
