@@ -11,10 +11,11 @@ pub type Group = (&'static str, fn() -> ComicStyle);
 pub const LINES: &str = "lines";
 
 /// Each effect is in one group and in the last one, which has all.
-pub const GROUPS: [Group; 10] = [
+pub const GROUPS: [Group; 9] = [
     ("colors", colors),
-    ("range of tones", range_of_tones),
-    ("tones", || of(&["tone_ramp", "tone_bands", "black_flats"])),
+    ("tones", || {
+        of(&["tone_range", "tone_ramp", "tone_bands", "black_flats"])
+    }),
     (LINES, || of(&["outlines", "contours"])),
     ("sketch", || of(&["sketch", "iso_lines"])),
     ("dots", || of(&["halftone", "misregistration"])),
@@ -40,10 +41,6 @@ fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
             rate: 0.0,
             ..default()
         })
-        .with(ToneRange {
-            outliers: 0.0,
-            ..default()
-        })
         .with(Paper {
             anchor: PaperAnchor::View,
             ..default()
@@ -55,16 +52,6 @@ fn with_all(is_in: impl Fn(&str) -> bool) -> ComicStyle {
         style.insert_any(own.unwrap_or_else(effect.default));
     }
     style
-}
-
-/// With flats that no tone is dark enough for: a small difference of the range, as samples and
-/// resolution make it, moves all tones a little, and would move whole areas into another band.
-/// Nor are there percentiles, which jump where an area has nearly that fraction of the picture.
-fn range_of_tones() -> ComicStyle {
-    of(&["tone_range"]).with(BlackFlats {
-        value: Some(1e-3),
-        ..default()
-    })
 }
 
 fn colors() -> ComicStyle {
